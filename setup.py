@@ -136,8 +136,10 @@ setup(
     install_requires=[
         "backports.zstd>=1.0; python_version < '3.14'",
         "click>=8.1",
+        "librt>=0.16",  # machine code of mypyc works with its vectors
         "lz4>=4.0",
         "mcap>=1.2,<2",
+        "mypy_extensions>=1.0",  # and with its integers
         "numpy>=1.26",
         "rich>=13",
         "rosbags>=0.11,<0.12",

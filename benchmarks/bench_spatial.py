@@ -3,8 +3,8 @@
     python benchmarks/bench_spatial.py
 
 Bodies of random twists strike a floor with the corners of a regular polygon. Prints medians in microseconds: of the law
-as the predictor calls it, compiled (where numba is) and as plain Python, of 16 draws at once, and of a call of
-`solve_spatial_impact`. What a whole sample costs, with draws and without, is told by `bench_predictor.py`.
+as the predictor calls it, by numba, as machine code (`make compiled`) and as Python; of 16 draws at once; and of a call
+of `solve_spatial_impact`. What a whole sample costs, with draws and without, is told by `bench_predictor.py`.
 """
 
 from __future__ import annotations
@@ -19,9 +19,11 @@ from rich.console import Console
 from rich.table import Table
 
 from impact_predictor import Body, ContactPoints, solve_spatial_impact
-from impact_predictor.mechanics.compiled import on_lists
+from impact_predictor.mechanics.compiled import without_numba
+from impact_predictor.mechanics.impact import spatial_body
 from impact_predictor.mechanics.impact.spatial import STEPS, make_bodies, solvers, workspace
 from impact_predictor.mechanics.impact.spatial_body import ANSWER, BODY, CONTACT, RESULT
+from impact_predictor.native import as_python
 from impact_predictor.prediction.draws import DRAW_STEPS
 
 TURNS, BODIES = 15, 64
@@ -74,7 +76,11 @@ def calls_of(n: int) -> Callable[[], object]:
 
 def main() -> None:
     """Time all of them in turns and print the table."""
-    laws = {"law": solvers().bodies, "law, plain Python": on_lists(make_bodies(""))}
+    laws = {
+        "law, numba": solvers().bodies,
+        "law, machine code": without_numba(make_bodies, spatial_body),
+        "law, Python": without_numba(make_bodies, as_python(spatial_body.__name__.partition(".")[2])),
+    }
     functions = {(name, n): law_of(n, law) for n in (1, 2, 4, 8) for name, law in laws.items()}
     functions |= {(f"law, {DRAWS} draws", n): draws_of(n) for n in (1, 2, 4, 8)}
     functions |= {("solve_spatial_impact", n): calls_of(n) for n in (1, 2, 4, 8)}

@@ -13,14 +13,16 @@ from unittest.mock import patch
 import numpy as np
 from numpy.typing import NDArray
 
-from impact_predictor.mechanics.compiled import on_lists
+from impact_predictor.mechanics.compiled import without_numba
 from impact_predictor.mechanics.impact import spatial as law
-from impact_predictor.mechanics.impact import spatial_path
 from impact_predictor.mechanics.impact.spatial import Body, ContactPoints, SpatialOutcome, solve_spatial_impact
 from impact_predictor.mechanics.types import ContactState
+from impact_predictor.native import as_python
 from impact_predictor.report.accuracy import problems, spatial
 from impact_predictor.report.modes import PALETTE
 from impact_predictor.report.plot import headline, picture
+
+spatial_path, BODY_LAW = (as_python(f"mechanics.impact.{name}") for name in ("spatial_path", "spatial_body"))
 
 SIDES = np.array([0.4, 0.3, 0.2])
 MASS = 2.0
@@ -57,7 +59,7 @@ def along(body: Body, contacts: ContactPoints, twist: NDArray[np.float64], steps
         solved.append(tuple(np.array(one) for one in (before, velocity, impulse)))
         return done
 
-    plain = law.Solvers(on_lists(law.make_bodies("")), on_lists(law.make_mechanism("")))
+    plain = law.Solvers(*(without_numba(make, BODY_LAW) for make in (law.make_bodies, law.make_mechanism)))
     with patch.object(spatial_path, "sweep", recorded), patch.object(law, "solvers", lambda: plain):
         solve_spatial_impact(body, contacts, twist, steps=steps)
     first = solved[0][0]

@@ -20,8 +20,10 @@ FOLDER = os.path.dirname(os.path.abspath(__file__))  # noqa: PTH100, PTH120  eve
 PREFIX = "native_"
 
 _COMPILED = {
-    "mechanics.impact": "answer contacts path_law rates restitution solve total_law",
-    "mechanics.motion": "engine equations events felt integrate phases pivot slip",
+    "mechanics.impact": "answer contacts path_law rates restitution solve spatial_body spatial_path total_law",
+    "mechanics.motion": (
+        "engine equations events falling felt integrate phases pivot reactions slip spatial_problem stances"
+    ),
     "prediction": "checks cylinder impact motion_recorder planar points predictor recorded scatter spatial vectors",
     "prediction.deck": "frame motion tracker window",
     "prediction.walking": (
@@ -33,8 +35,8 @@ _COMPILED = {
     "ros.messages": "fields kinds message",
 }
 MODULES = tuple(f"{PACKAGE}.{folder}.{name}" for folder, names in _COMPILED.items() for name in names.split())
-"""What is compiled: the impact laws, and what a sample goes through. What takes arrays, what numba reads and what tests
-stand in for runs as Python (`as_python`)."""
+"""What is compiled: the impact laws, and what a sample goes through. What takes arrays and what tests stand in for runs
+as Python, as does what numba reads (`as_python`)."""
 
 FOLDERS = ("mechanics", "prediction", "ros/messages")
 """Where the sources of MODULES are, with all that they use: types and constants of others are in the machine code."""
@@ -104,11 +106,16 @@ def library() -> ModuleType | str:
     return loaded
 
 
+def is_compiled(name: str) -> bool:
+    """Whether a module runs as machine code."""
+    return name in MODULES and not isinstance(library(), str)
+
+
 class Finder:
     """Finds and loads MODULES in the library, if there is one."""
 
     def find_spec(self, name: str, path: object = None, target: object = None) -> ModuleSpec | None:
-        if name not in MODULES or isinstance(library(), str):
+        if not is_compiled(name):
             return None
         return ModuleSpec(name, self, origin=file_of(name))  # type: ignore[arg-type]
 

@@ -2,36 +2,51 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Iterator
+from collections.abc import Callable, Collection, Iterator, Sequence
 from contextlib import contextmanager
+from functools import cache
 from hashlib import sha256
-from inspect import getmembers, getsource, isfunction
+from inspect import getmembers, getsource, isfunction, signature
 from types import ModuleType
-from typing import Any, TypeVar, cast
+from typing import TYPE_CHECKING, Any, TypeVar, cast
+
+import numpy as np
+
+from ..native import as_python, is_compiled
+
+if TYPE_CHECKING:
+    from librt.vecs import vec
+    from mypy_extensions import i64
+
+    Floats = vec[float]
+    """A flat sequence of numbers that law code reads and writes: an array for numba, a vector in machine code, a list
+    in Python. Its parts are views of an array, else copies."""
+    Ints = vec[i64]
+    Count = i64
+    """What counts and indexes them."""
 
 Function = TypeVar("Function", bound=Callable[..., object])
 
 
 def compiled(
-    make: Callable[[str], Function], modules: Iterable[ModuleType], inlined: Callable[[object], bool]
+    make: Callable[..., Function], modules: Sequence[ModuleType], inlined: Callable[[object], bool], *given: object
 ) -> Function | None:
     """The function that `make` makes, compiled; None where numba is not installed.
 
     It may call the functions of `modules`; those that are `inlined` become a part of their callers. What was compiled
     is kept where a folder can be written, under the name that `make` is given and binds in its function: the digest of
-    the modules' text.
+    the modules' text. `make` takes what else is `given`, too.
     """
     try:
         from numba import njit
         from numba.extending import register_jitable
     except ImportError:
         return None
-    modules = tuple(modules)
     for module in modules:
         for _, part in getmembers(module, isfunction):
             if part.__module__ == module.__name__:
                 register_jitable(forceinline=inlined(part))(part)
-    function = make(sha256("".join(map(getsource, modules)).encode()).hexdigest())
+    function = make(sha256("".join(map(getsource, modules)).encode()).hexdigest(), *given)
     # Divisions are as in C: law code never divides by zero.
     try:
         return cast(Function, njit(function, cache=True, error_model="numpy"))
@@ -40,30 +55,72 @@ def compiled(
 
 
 def door(
-    make: Callable[[str], Callable[..., Any]], modules: Iterable[ModuleType], inlined: Collection[object] = ()
+    make: Callable[[str, Any], Callable[..., Any]],
+    law: ModuleType,
+    used: Sequence[str] = (),
+    inlined: Collection[str] = (),
 ) -> Callable[..., Any]:
-    """The function that `make` makes, compiled if that can be; else it runs on lists, which are faster there."""
-    found = compiled(make, modules, lambda function: function in inlined)
-    return on_lists(make("")) if found is None else found
+    """The function that `make` makes of a module of law code, compiled if that can be.
+
+    It calls functions of the modules with the names `used`, too; the functions of the names `inlined` become a part of
+    their callers. Without numba it is machine code, or runs as Python.
+    """
+    modules = [as_python(name.partition(".")[2]) for name in (*used, law.__name__)]
+    function = compiled(make, modules, lambda part: getattr(part, "__name__", "") in inlined, modules[-1])
+    return without_numba(make, law) if function is None else function
 
 
-def on_lists(function: Callable[..., Any]) -> Callable[..., Any]:
-    """Law code that runs as Python on lists, which are faster there, and fills the arrays that it is given."""
+def without_numba(make: Callable[[str, Any], Callable[..., Any]], law: ModuleType) -> Callable[..., Any]:
+    """The function that `make` makes of a module of law code, which fills the arrays that it is given.
+
+    As machine code it runs on vectors, as Python on lists, which are faster there than arrays. What it takes as `work`
+    it only works with: that is not copied.
+    """
+    function, flat = make("", law), vectors if is_compiled(law.__name__) else lists
+    names = list(signature(function).parameters)
+    work_at, work = names.index("work") if "work" in names else -1, {}
 
     def called(*given: Any) -> Any:
-        lists = [as_lists(one) for one in given]
-        result = function(*lists)
-        for array, values in zip(given, lists, strict=True):
-            fill(array, values)
+        taken = [as_flat(one, flat) if i != work_at else one for i, one in enumerate(given)]
+        if work_at >= 0:
+            room = len(given[work_at])
+            if room not in work:
+                work[room] = flat(np.zeros(room))
+            taken[work_at] = work[room]
+        result = function(*taken)
+        for i, (array, values) in enumerate(zip(given, taken, strict=True)):
+            if i != work_at:
+                fill(array, values)
         return result
 
     return called
 
 
-def as_lists(given: Any) -> Any:
+def lists(array: Any) -> Any:
+    return array.tolist()
+
+
+def vectors(array: Any) -> Any:
+    """The numbers of an array (n) as a vector, or those of one (k, n) as a list of them."""
+    of_floats, of_ints = vector_types()
+    if array.ndim > 1:
+        return [of_floats(row) for row in array.tolist()]
+    return (of_floats if array.dtype.kind == "f" else of_ints)(array.tolist())
+
+
+@cache
+def vector_types() -> tuple[Callable[[list[float]], Any], Callable[[list[int]], Any]]:
+    """What makes vectors of numbers: only machine code needs them."""
+    from librt.vecs import vec
+    from mypy_extensions import i64
+
+    return vec[float], vec[i64]
+
+
+def as_flat(given: Any, flat: Callable[[Any], Any]) -> Any:
     if isinstance(given, tuple):
-        return tuple(map(as_lists, given))
-    return given.tolist() if hasattr(given, "tolist") else given
+        return tuple([as_flat(one, flat) for one in given])
+    return flat(given) if hasattr(given, "tolist") else given
 
 
 def fill(given: Any, values: Any) -> None:

@@ -9,12 +9,12 @@ from typing import Final
 from .types import Quaternion, Sample, Status, Vector3
 from .vectors import dot
 
-PAUSE = 250_000_000  # ns without a message, or by which a clock goes back, after which a stream begins anew
-LARGEST = 1e24
+PAUSE: Final = 250_000_000  # ns without a message, or by which a clock goes back, after which a stream begins anew
+LARGEST: Final = 1e24
 """Sum of the squares of position, velocity and angular velocity beyond which no body is and products overflow."""
 
-UNIT = 1e-3  # how far the square of a quaternion's length may be from 1; float32 sources stay below 1e-6
-COINCIDENT = 1e-9  # points closer than this part of the largest coordinate are one
+UNIT: Final = 1e-3  # how far the square of a quaternion's length may be from 1; float32 sources stay below 1e-6
+COINCIDENT: Final = 1e-9  # points closer than this part of the largest coordinate are one
 
 
 def check_numbers(sample: Sample) -> Status:

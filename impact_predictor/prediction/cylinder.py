@@ -14,7 +14,8 @@ from typing import Any, Final
 import numpy as np
 
 from ..errors import InputError
-from ..mechanics.compiled import on_lists
+from ..mechanics.compiled import without_numba
+from ..mechanics.impact import spatial_body
 from ..mechanics.impact.answer import mode_of
 from ..mechanics.impact.solve import number_of
 from ..mechanics.impact.spatial import STEPS, flags_named, make_bodies, workspace
@@ -42,15 +43,15 @@ from .spatial_impact import SpatialCollision, outcomes_of
 from .types import Moment, Sample, SpatialTwist, Touchdown, Vector3
 from .vectors import add, axes_of, cross, dot, times, to_body, to_world
 
-ASIDE = 0.5
+ASIDE: Final = 0.5
 """A cylinder has left its edges when its axis is farther outside of them than this part of its radius: there it would
 still balance over an edge of a support that leans by 30 degrees."""
 
 BLOCKED: Final = 1e9
 """What does not turn has so many times the inertia about the axis."""
 
-PLAIN: Final = on_lists(make_bodies(""))
-"""The law code as Python: a cylinder that slides along its axis is rare, and needs nothing compiled."""
+SOLVE: Final = without_numba(make_bodies, spatial_body)
+"""The law code: a cylinder that slides along its axis is rare, and needs nothing compiled."""
 
 
 class CylinderContacts(PointContacts):
@@ -179,7 +180,7 @@ class CylinderContacts(PointContacts):
         answer: Any = np.zeros(ANSWER + RESULT * n)
         notes: Any = np.zeros(1, np.int64)
         how = bool(number_of(scene.law)), scene.merge, hardly(scene), STEPS
-        PLAIN(n, np.array([problem]), *how, answer[None], notes, *workspace(n))
+        SOLVE(n, np.array([problem]), *how, answer[None], notes, *workspace(n))
         numbers = answer.tolist()
         center = add(told.position, to_world(axes_of(told.orientation), scene.center_of_mass))
         positions = [add(center, to_world(axes, (one.x, one.y, 0.0))) for one in touching]

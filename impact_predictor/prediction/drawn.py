@@ -4,10 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from math import erf, inf, sqrt
+from typing import TYPE_CHECKING
 
 from ..mechanics.impact.spatial_body import ANSWER, BODY, CONTACT, RESULT
-from ..mechanics.impact.spatial_path import LEAVES, NEARS, SLIPS, STICKS, Given, Scratch
+from ..mechanics.impact.spatial_path import LEAVES, NEARS, SLIPS, STICKS
 from ..mechanics.types import Mode
+
+if TYPE_CHECKING:
+    from ..mechanics.compiled import Floats
 
 _, STOP, SLIDE, PIVOT_SLIDE, PIVOT, BACK_PIVOT, FLIGHT = (int(mode) for mode in Mode)
 
@@ -35,7 +39,7 @@ def over(margin: float, blur: float) -> float:
     return 0.5 * (1.0 + erf(margin / (blur * ROOT)))
 
 
-def tell(n: int, standing: int, problem: Given, answers: Sequence[Given], given: Given, told: Scratch) -> None:
+def tell(n: int, standing: int, problem: Floats, answers: Sequence[Floats], given: Floats, told: Floats) -> None:
     """Fill in what the answers to draws of a problem say; the first `standing` of its n contacts stand.
 
     `given` is the rate in m/s above which a group of contacts leaves; by what part of its speed a contact strays from
@@ -49,7 +53,7 @@ def tell(n: int, standing: int, problem: Given, answers: Sequence[Given], given:
     tell_moments(n, answers, given, told)
 
 
-def tell_modes(n: int, standing: int, problem: Given, answers: Sequence[Given], given: Given, told: Scratch) -> None:
+def tell_modes(n: int, standing: int, problem: Floats, answers: Sequence[Floats], given: Floats, told: Floats) -> None:
     """Fill in how likely each mode is and each contact's lift, and which mode each draw has."""
     least, stray, slow = given[0], given[1], given[2]
     square, count, modes = 0.0, len(answers), LIFTS + n + ANSWER + RESULT * n + SCRATCH
@@ -94,7 +98,7 @@ def tell_modes(n: int, standing: int, problem: Given, answers: Sequence[Given], 
         told[modes + d] = float(mode)
 
 
-def tell_answer(n: int, problem: Given, answers: Sequence[Given], least: float, told: Scratch) -> None:
+def tell_answer(n: int, problem: Floats, answers: Sequence[Floats], least: float, told: Floats) -> None:
     """Fill in the likeliest mode that a draw has, and the mean of the answers with it.
 
     A contact has closed in it that has done so in half of them.
@@ -127,7 +131,7 @@ def tell_answer(n: int, problem: Given, answers: Sequence[Given], least: float, 
             told[whole + at] = NEARS
 
 
-def tell_moments(n: int, answers: Sequence[Given], given: Given, told: Scratch) -> None:
+def tell_moments(n: int, answers: Sequence[Floats], given: Floats, told: Floats) -> None:
     """Fill in mean and variance of the twist in the impact plane, and its covariance along the axes of the body."""
     count, spot = len(answers), LIFTS + n + ANSWER + RESULT * n
     for d in range(count):

@@ -121,7 +121,7 @@ class Draws:
 @cache
 def teller() -> Callable[..., None]:
     """The law code that reads the answers of draws, compiled, where it can be, and loaded."""
-    tell = door(make_teller, (drawn,), (drawn.over,))
+    tell = door(make_teller, drawn, inlined=("over",))
     tell(
         1,
         0,
@@ -133,12 +133,12 @@ def teller() -> Callable[..., None]:
     return tell
 
 
-def make_teller(law_code: str) -> Callable[..., None]:
+def make_teller(law_code: str, law: Any) -> Callable[..., None]:
     """The function that reads answers; numba keeps what it compiled under the value of `law_code`."""
 
     def tell(n: int, standing: int, problem: Any, answers: Any, given: Any, told: Any) -> None:
         law_code  # noqa: B018
-        drawn.tell(n, standing, problem, answers, given, told)
+        law.tell(n, standing, problem, answers, given, told)
 
     return tell
 

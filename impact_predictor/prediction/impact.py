@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from math import hypot
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 from ..mechanics.impact import solve_impact
 from ..mechanics.motion import Fall
@@ -16,17 +16,17 @@ from .vectors import add, axes_of, combine, cross, dot, to_body, to_world, total
 if TYPE_CHECKING:
     from .uncertainty import Sampler
 
-OFF_AXIS = 0.3
+OFF_AXIS: Final = 0.3
 """A touchdown is planar up to this part of the angular velocity off the axis: 9 % of the turning energy."""
 
-OFFSET = 0.2
+OFFSET: Final = 0.2
 """... and up to this part of the contacts' half distance between their plane and the mass centre (in flight of the
 distance between contact and mass centre)."""
 
 RESTITUTION = {"path": "energetic", "total": "poisson"}
 """The rule of each law's restitution: that of the law in three dimensions, which answers beside the planar one."""
 
-SLOWEST = 4.0
+SLOWEST: Final = 4.0
 """An impact can be told from rest when it approaches this many times faster than gravity moves it in a contact time."""
 
 

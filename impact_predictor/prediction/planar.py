@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from math import copysign, hypot, inf, sqrt
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 from ..mechanics.impact.answer import mode_of
 from ..mechanics.types import ContactState, Mode, Twist, Vector
@@ -20,22 +20,22 @@ from .vectors import add, any_across, applied, axes_of, cross, dot, inverse, mea
 if TYPE_CHECKING:
     from .scatter import Scatter
 
-STANDING = 0.2
+STANDING: Final = 0.2
 """A point within the contact tolerance stands while it moves along the normal slower than this part of the fastest
 point: the stance of a body that turns about it, told from a body that only grazes the support."""
 
-NEARER = 0.5
+NEARER: Final = 0.5
 """... of which noise may hide up to this part: there a point is as near to rest as to the fastest one."""
 
-RESTS = 3e-4
+RESTS: Final = 3e-4
 """A group of contacts holds that leaves more slowly than this part of the approach."""
 
-ROUNDING = 1e-12
+ROUNDING: Final = 1e-12
 """The square of a direction this small, relative to the vector it is a part of, is none: points may be float32."""
 
 ORIGIN = (0.0, 0.0, 0.0)  # of the body frame, where the mass centre often lies
-TINY = 1e-100  # below it the square of a length or of a speed has lost its digits
-GRAZES = 1e-9  # m/s: what reaches the support slower only grazes it
+TINY: Final = 1e-100  # below it the square of a length or of a speed has lost its digits
+GRAZES: Final = 1e-9  # m/s: what reaches the support slower only grazes it
 
 
 class Posture(NamedTuple):

@@ -7,6 +7,7 @@ from collections import deque
 from collections.abc import Mapping
 from math import cos, hypot, sin
 from operator import attrgetter
+from typing import Final
 
 from ..mechanics.motion import Fall, PlanarState, next_touchdown
 from ..mechanics.types import Contact, TwoPointBody, Vector
@@ -24,24 +25,26 @@ from .spatial_impact import SpatialCollision
 from .types import ContactInput, Geometry, Leftover, Moment, Sample, Status, Touchdown, Vector3
 from .vectors import add, axes_of, rotation_between, times, to_body, total
 
-ACCURACY = 1e-6  # of the motion before the touchdown, relative: a thousandth of what poses and twists are measured to
-SETTLED = 0.5
+ACCURACY: Final = (
+    1e-6  # of the motion before the touchdown, relative: a thousandth of what poses and twists are measured to
+)
+SETTLED: Final = 0.5
 """A touchdown has happened when less than this part of the approach is left, within the contact tolerance, that the
 predicting sample measured: the approach predicted for the touchdown has gravity's gain on the way added to it."""
 
-PLANE = 2
+PLANE: Final = 2
 """A body on so many points moves in a plane, as those of the paper do: nothing more is prepared for it."""
 
-HIGH = 1.0
+HIGH: Final = 1.0
 """A body is off its moving support when all of it is farther above than this part of its size. No impact throws it
 there: for a body of 1 m that takes 4.4 m/s, and one that topples keeps a contact, or one near it."""
 
-GUESS = 0.01
+GUESS: Final = 0.01
 """Part of a body's size that gaps over a moving support, whose noise is in them, may scatter by until that is known,
 where no contact tolerance is given."""
 
-SURELY = 2.0  # times the rates that are not told from none: a point that is faster moves
-WORTH = 1e-4
+SURELY: Final = 2.0  # times the rates that are not told from none: a point that is faster moves
+WORTH: Final = 1e-4
 """m: that gaps scatter by less is not worth a word."""
 
 

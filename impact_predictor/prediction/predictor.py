@@ -8,7 +8,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections import deque
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 from .checks import PAUSE, check_numbers, order_of
 from .scene import Scene
@@ -34,11 +34,11 @@ if TYPE_CHECKING:
     from .walking.clock import Delay
 
 
-DEEP = 0.05
+DEEP: Final = 0.05
 """A contact is below its support when it lies deeper than this part of the body's size, or of its foot's distance from
 the base ..."""
 
-DEEP_TOLERANCES = 4.0
+DEEP_TOLERANCES: Final = 4.0
 """... and so many contact tolerances. A tolerance is about three standard deviations of the gap of a point that rests,
 and an orientation that is wrong by 3 degrees (0.05 rad) moves a point by 0.05 of the body's size."""
 

@@ -5,22 +5,23 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Sequence
 from math import sqrt
+from typing import Final
 
 from ..stamps import NANOSECONDS
 from .checks import PAUSE
 from .planar import Posture, hardly
 from .scene import Scene
 
-SLACK = 3.0
+SLACK: Final = 3.0
 """What is less than so many standard deviations is not told from none."""
 
-ENOUGH = 100
+ENOUGH: Final = 100
 """Samples that tell their scatter, and gaps of standing points from which on theirs is known."""
 
-OFTEN = 10
+OFTEN: Final = 10
 """After so many samples what they tell is told anew, by as many as there are until `ENOUGH` were taken."""
 
-OF_MEDIAN = 1.4826
+OF_MEDIAN: Final = 1.4826
 """Standard deviation of normal noise, by the median of its amounts."""
 
 OF_STEP, OF_MIDDLE = sqrt(2.0), sqrt(1.5)
@@ -96,7 +97,7 @@ class Scatter:
             self.gap = max(self.noise, SLACK * self.deviation)
 
 
-AVERAGED = 200
+AVERAGED: Final = 200
 """Differences over which noise is averaged."""
 
 

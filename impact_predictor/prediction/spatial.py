@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from functools import cache
 from math import sqrt
+from typing import Final
 
 from ..mechanics.motion.spatial import Pull, SpatialState, fall
 from ..mechanics.types import ContactState
@@ -29,10 +30,10 @@ from .vectors import (
     turned,
 )
 
-WINDOW = 2.0
+WINDOW: Final = 2.0
 """Points take part in an impact that close within so many compressions after the first one."""
 
-PLANAR = 1e-3
+PLANAR: Final = 1e-3
 """A touchdown is planar whose motion across its plane, with what pulls it there until then, is below this part of the
 new contact's approach, and whose contacts and inertia lie as near to the plane: there both laws agree to that. Motion
 and gaps are also those of a plane where they cannot be told from it by how far they scatter."""

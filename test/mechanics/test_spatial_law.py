@@ -3,6 +3,8 @@
 Differences are relative to the fastest contact before the impact.
 """
 
+from importlib import import_module
+
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
@@ -11,9 +13,10 @@ from test_spatial_reference import BALL, cases, chain
 
 import impact_predictor
 from impact_predictor import Body, ContactPoints, Flag, solve_spatial_impact
-from impact_predictor.mechanics.compiled import on_lists
+from impact_predictor.mechanics.compiled import without_numba
 from impact_predictor.mechanics.impact import spatial
 from impact_predictor.mechanics.types import ContactState
+from impact_predictor.native import as_python
 
 MASS, INERTIA = 50.0, 50.0 / 12.0 * np.diag([0.6**2 + 0.5**2, 1.0 + 0.5**2, 1.0 + 0.6**2])
 CORNERS = np.array([[0.5, 0.3, -0.25], [0.5, -0.3, -0.25], [-0.5, 0.3, -0.25]])
@@ -183,11 +186,15 @@ GOOD = Body(1.0, [0.1, 0.12, 0.15]), ContactPoints(PLACES, 0.4, 0.3), FALLS
 NAN, INF = np.nan, np.inf
 
 
-@pytest.fixture(params=["compiled", "plain"])
+LAW = "mechanics.impact.spatial_body"
+
+
+@pytest.fixture(params=["numba", "machine code", "Python"])
 def code(request, monkeypatch):
-    """The law code as it is where numba is installed, and where it is not: there a division by zero raises."""
-    if request.param == "plain":
-        plain = [on_lists(make("")) for make in (spatial.make_bodies, spatial.make_mechanism)]
+    """The law code in all of its forms: in the two without numba a division by zero raises."""
+    if request.param != "numba":
+        law = as_python(LAW) if request.param == "Python" else import_module(f"impact_predictor.{LAW}")
+        plain = [without_numba(make, law) for make in (spatial.make_bodies, spatial.make_mechanism)]
         monkeypatch.setattr(spatial, "solvers", lambda: spatial.Solvers(*plain))
 
 

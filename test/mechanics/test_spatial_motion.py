@@ -17,9 +17,8 @@ import pytest
 from newton_in_space import Newton, numbers_of, tensor
 from scipy.spatial.transform import Rotation
 
-from impact_predictor.mechanics.compiled import on_lists
-from impact_predictor.mechanics.motion import Fall, PlanarState, next_touchdown, spatial
-from impact_predictor.mechanics.motion.falling import crossing
+from impact_predictor.mechanics.compiled import without_numba
+from impact_predictor.mechanics.motion import Fall, PlanarState, next_touchdown, spatial, spatial_problem
 from impact_predictor.mechanics.motion.spatial import (
     Pull,
     SpatialFall,
@@ -27,7 +26,10 @@ from impact_predictor.mechanics.motion.spatial import (
     fall,
     make_fall,
 )
+from impact_predictor.native import as_python
 
+PYTHON = as_python("mechanics.motion.spatial_problem")
+crossing = as_python("mechanics.motion.falling").crossing
 GOLDEN = json.loads((Path(__file__).parent / "golden" / "motion.json").read_text())
 TIME, TWIST = 1e-6, 1e-5
 """What a touchdown is right to, relative to the scales of the motion: the method's tolerance over some ten steps."""
@@ -296,7 +298,7 @@ def test_a_corner_that_lifts_does_not_strike_as_it_leaves() -> None:
 @pytest.mark.parametrize("plain", [False, True], ids=["compiled", "plain"])
 def test_odd_numbers_have_no_touchdown_and_raise_nothing(plain: bool, monkeypatch: pytest.MonkeyPatch) -> None:
     if plain:
-        monkeypatch.setattr(spatial, "solver", lambda: on_lists(make_fall("")))
+        monkeypatch.setattr(spatial, "solver", lambda: without_numba(make_fall, PYTHON))
     good = SpatialState((0.0, 0.0, 0.2), FLAT, (0.0, 0.0, -1.0), (1.0, 2.0, 3.0))
     bad = [
         fall(good._replace(position=(0.0, math.nan, 0.2)), ALIKE, CUBE),
@@ -334,7 +336,7 @@ def test_random_stances_give_finite_touchdowns_above_the_support() -> None:
 
 
 @pytest.mark.extras
-def test_compiled_and_plain_code_give_the_same_bits(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_every_form_of_the_law_code_gives_the_same_bits(monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("numba")
     draw, cases = random.Random(7), []
     for k in range(30):
@@ -342,6 +344,7 @@ def test_compiled_and_plain_code_give_the_same_bits(monkeypatch: pytest.MonkeyPa
         standing = (corner, corner ^ 1) if k % 3 == 0 else (corner,)
         cases.append((start, GENERAL, CUBE, standing, 0.2, DECK, 0.3))
     found = [fall(*case) for case in cases]
-    monkeypatch.setattr(spatial, "solver", lambda: on_lists(make_fall("")))
-    assert [fall(*case) for case in cases] == found
+    for law in (PYTHON, spatial_problem):
+        monkeypatch.setattr(spatial, "solver", lambda law=law: without_numba(make_fall, law))
+        assert [fall(*case) for case in cases] == found
     assert any(one.point >= 0 for one in found)

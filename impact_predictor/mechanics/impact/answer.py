@@ -6,28 +6,41 @@ Law code (see `contacts`), so that `solve_impact` and the compiled `solve_impact
 from __future__ import annotations
 
 from math import inf, sqrt
+from typing import Final
 
 from ..types import Contact, Flag, Mode, Twist, Validity
 from . import path_law, total_law
 from .contacts import NO_SOLUTION, ROUNDING, ContactRows, Impact, Problem, problem_of, twist_after
 
-PATH, TOTAL, ENERGETIC_PATH = 0, 1, 2
+PATH: Final = 0
+TOTAL: Final = 1
+ENERGETIC_PATH: Final = 2
 """The laws: the path law with Poisson's restitution, the total law, and the path law with energetic restitution."""
 
-STAYS = 1e-10
+STAYS: Final = 1e-10
 """A contact velocity below this part of the contact speeds before the impact is zero for the mode."""
 
-ENERGY_ROUNDING = 1e-12
+ENERGY_ROUNDING: Final = 1e-12
 """Work of the contacts below this part of mass times the contact speeds squared is rounding."""
 
-NO_IMPACT, STOP, SLIDE, PIVOT_SLIDE, PIVOT, BACK_PIVOT, FLIGHT = (int(mode) for mode in Mode)
+NO_IMPACT: Final = int(Mode.NO_IMPACT)
+STOP: Final = int(Mode.STOP)
+SLIDE: Final = int(Mode.SLIDE)
+PIVOT_SLIDE: Final = int(Mode.PIVOT_SLIDE)
+PIVOT: Final = int(Mode.PIVOT)
+BACK_PIVOT: Final = int(Mode.BACK_PIVOT)
+FLIGHT: Final = int(Mode.FLIGHT)
 
-OLD_RESTITUTION_IGNORED, BOTH_STRUCK = int(Flag.OLD_RESTITUTION_IGNORED), int(Flag.BOTH_STRUCK)
-LAST_RESORT, ENERGY_GAINED, INVALID_INPUT = int(Flag.LAST_RESORT), int(Flag.ENERGY_GAINED), int(Flag.INVALID_INPUT)
-THIN_BODY, SLOW_IMPACT = int(Flag.THIN_BODY), int(Flag.SLOW_IMPACT)
+OLD_RESTITUTION_IGNORED: Final = int(Flag.OLD_RESTITUTION_IGNORED)
+BOTH_STRUCK: Final = int(Flag.BOTH_STRUCK)
+LAST_RESORT: Final = int(Flag.LAST_RESORT)
+ENERGY_GAINED: Final = int(Flag.ENERGY_GAINED)
+INVALID_INPUT: Final = int(Flag.INVALID_INPUT)
+THIN_BODY: Final = int(Flag.THIN_BODY)
+SLOW_IMPACT: Final = int(Flag.SLOW_IMPACT)
 
-VALIDITY = Validity()
-SQRT_3 = sqrt(3.0)
+VALIDITY: Final = Validity()
+SQRT_3: Final = sqrt(3.0)
 
 Reaction = tuple[int, Impact, int, float, bool, int]
 """Mode; what the law says; the bits of `Flag`; work of the contacts on a body of unit mass, times 2; whether the law
@@ -37,7 +50,7 @@ BodyAnswer = tuple[int, tuple[float, float, float], float, float, float, float, 
 """Mode; twist after; N_A, T_A, N_B, T_B in N s; the contact states as a law codes them; the bits of `Flag`; energy
 lost; whether the law allows no other answer; the law that answered."""
 
-NOTHING: Impact = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0, 0, 0)
+NOTHING: Final[Impact] = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0, 0, 0)
 
 
 def follow(problem: Problem, law: int, choice: int) -> Impact:

@@ -18,16 +18,20 @@ fixed size, unpacked by name: it means the same number on every machine, and a c
 from __future__ import annotations
 
 from math import inf, sqrt
+from typing import Final
 
 from ..types import Contact, Flag, Twist
 
-OPEN, STICK, PLUS, MINUS = 0, 1, 2, 3
+OPEN: Final = 0
+STICK: Final = 1
+PLUS: Final = 2
+MINUS: Final = 3
 """States of a contact, in the order in which a law prefers them; PLUS and MINUS slip along +t and -t."""
 
-ROUNDING = 1e-14
+ROUNDING: Final = 1e-14
 """A condition violated by less than this part of its terms holds: it is a border met up to rounding."""
 
-CANCELLED = 1e-12
+CANCELLED: Final = 1e-12
 """The same where the rows come from a W; a sum below this part of its terms is then the rounding of W."""
 
 OldRows = tuple[float, float, float, float, float]
@@ -61,16 +65,18 @@ notes; and how many answers the law allows."""
 Push = tuple[bool, float, float, float, float]
 """Whether the cones of friction allow a push; N_A, T_A, N_B, T_B with it."""
 
-REVERSED, JAMMED, WORK_LIMITED, SHARED_FRICTION, NO_SOLUTION = (
-    int(flag) for flag in (Flag.REVERSED_SLIP, Flag.JAMMED, Flag.WORK_LIMITED, Flag.SHARED_FRICTION, Flag.NO_SOLUTION)
-)
+REVERSED: Final = int(Flag.REVERSED_SLIP)
+JAMMED: Final = int(Flag.JAMMED)
+WORK_LIMITED: Final = int(Flag.WORK_LIMITED)
+SHARED_FRICTION: Final = int(Flag.SHARED_FRICTION)
+NO_SOLUTION: Final = int(Flag.NO_SOLUTION)
 """Notes on an answer, the bits of `Flag`."""
 
 
-SPEED_ROUNDING = 1e-14
+SPEED_ROUNDING: Final = 1e-14
 """A contact speed below this part of the terms it is the sum of is rounding and counts as zero."""
 
-UNIT = 1e-6
+UNIT: Final = 1e-6
 """How far the square of a normal's length may be from 1."""
 
 ImpactFrame = tuple[float, float, float]
@@ -80,7 +86,7 @@ ContactView = tuple[bool, float, float, float, float, float, float, float]
 """Whether every number of a contact is in its range; its normal and tangential velocity, and the speed below which
 either is rounding; its normal; moments of its normal and its tangent about the mass centre."""
 
-NOT_VALID: ContactView = (False, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+NOT_VALID: Final[ContactView] = (False, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
 def planar_contacts(
@@ -217,10 +223,10 @@ def problem_of(
     return True, (contacts, (ea, eb), (cna, cta, cnb, ctb), (zero_a, zero_a, zero_b, zero_b)), (ax, ay, rho)
 
 
-FARTHEST = 1e100
+FARTHEST: Final = 1e100
 """Radii of gyration beyond which no body has contacts: products of such levers overflow."""
 
-NO_PROBLEM: Problem = (
+NO_PROBLEM: Final[Problem] = (
     planar_contacts(1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
     (0.0, 0.0),
     (inf, 0.0, 0.0, 0.0),

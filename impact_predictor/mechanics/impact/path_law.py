@@ -16,7 +16,7 @@ the work stays in B. Law code (see `contacts`).
 from __future__ import annotations
 
 from math import inf
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 from .contacts import (
     JAMMED,
@@ -57,24 +57,32 @@ class Jam(NamedTuple):
     work: float
 
 
-NO_JAM = Jam(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+NO_JAM: Final = Jam(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
-REST = 1e-10
+REST: Final = 1e-10
 """Below this part of the speeds before the impact B has no normal velocity, where both contacts rest otherwise."""
 
-LEFT = 1e-9
+LEFT: Final = 1e-9
 """Below this part of its own size an approach that is left after endless jams is none."""
 
-SLOWEST = 1e-6
+SLOWEST: Final = 1e-6
 """Jams whose slips become smaller by no more than this part are not followed to their limit."""
 
-MAX_SEGMENTS = 600
+MAX_SEGMENTS: Final = 600
 """Jams after which A slips can be many, while the slips shrink by a factor each time; nothing else needs ten."""
 
-ROOM = 1 << 52
+ROOM: Final = 1 << 52
 """A code of segments below this has room for two more in 64 bits; later segments are not told."""
 
-ENDLESS, COMPRESSED, EXPANDED, WORK_RETURNED, OLD_CLOSES, OLD_SLIP_ENDS, NEW_SLIP_ENDS, FULL, OPENED = range(9)
+ENDLESS: Final = 0
+COMPRESSED: Final = 1
+EXPANDED: Final = 2
+WORK_RETURNED: Final = 3
+OLD_CLOSES: Final = 4
+OLD_SLIP_ENDS: Final = 5
+NEW_SLIP_ENDS: Final = 6
+FULL: Final = 7
+OPENED: Final = 8
 """What ends a segment."""
 
 

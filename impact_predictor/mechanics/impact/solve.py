@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from functools import cache
 from math import isfinite
+from typing import Final
 
 from ..types import Alternative, Contact, Flag, Mode, Outcome, Twist, TwoPointBody, Validity
 from .answer import (
@@ -28,16 +29,16 @@ from .restitution import RULES
 LAWS = ("path", "total")
 """The names of the laws."""
 
-NUMBERS = {("path", "poisson"): PATH, ("total", "poisson"): TOTAL, ("path", "energetic"): ENERGETIC_PATH}
+NUMBERS: Final = {("path", "poisson"): PATH, ("total", "poisson"): TOTAL, ("path", "energetic"): ENERGETIC_PATH}
 """The numbers of the laws, each with a rule of restitution; of the total law, which has its own, the rule that is the
 default."""
 
-NAMES = tuple([law for law, _ in NUMBERS])
+NAMES: Final = tuple([law for law, _ in NUMBERS])
 """The names of the laws, at their numbers."""
 
-MODES = tuple(Mode)
+MODES: Final = tuple(Mode)
 
-NOWHERE = Contact(0.0, 0.0, 0.0)
+NOWHERE: Final = Contact(0.0, 0.0, 0.0)
 """What a body without an old contact has in its place."""
 
 

@@ -364,15 +364,15 @@ class Solvers(NamedTuple):
 @cache
 def solvers() -> Solvers:
     """The doors, compiled if that can be; the first time on a machine this takes some seconds."""
-    return Solvers(door(make_bodies, LAW_CODE, INLINED), door(make_mechanism, LAW_CODE, INLINED))
+    return Solvers(door(make_bodies, spatial_body, USED, INLINED), door(make_mechanism, spatial_body, USED, INLINED))
 
 
-LAW_CODE = (spatial_path, spatial_body)
-INLINED = (spatial_path.velocities, spatial_path.push)
+USED = (spatial_path.__name__,)
+INLINED = ("velocities", "push")
 
 
-def make_bodies(law_code: str) -> Callable[..., None]:
-    """The function that solves many problems; numba keeps what it compiled under the value of `law_code`."""
+def make_bodies(law_code: str, law: Any) -> Callable[..., None]:
+    """The function that solves many problems by `spatial_body`; numba keeps what it compiled under `law_code`."""
 
     def bodies(
         n: int,
@@ -388,12 +388,12 @@ def make_bodies(law_code: str) -> Callable[..., None]:
     ) -> None:
         law_code  # noqa: B018
         for i in range(len(problems)):
-            notes[i] = spatial_body.strike(n, problems[i], total, merge, threshold, steps, answers[i], work, marks)
+            notes[i] = law.strike(n, problems[i], total, merge, threshold, steps, answers[i], work, marks)
 
     return bodies
 
 
-def make_mechanism(law_code: str) -> Callable[..., int]:
+def make_mechanism(law_code: str, law: Any) -> Callable[..., int]:
     """The function that solves one mechanism."""
 
     def mechanism(
@@ -413,7 +413,7 @@ def make_mechanism(law_code: str) -> Callable[..., int]:
         marks: Any,
     ) -> int:
         law_code  # noqa: B018
-        return spatial_body.strike_mechanism(
+        return law.strike_mechanism(  # type: ignore[no-any-return]
             n, W, friction, restitution, gaps, total, merge, threshold, steps, start, c, impulse, work, marks
         )
 

@@ -11,37 +11,40 @@ along the normal moves it there, over the impulse.
 
 from __future__ import annotations
 
-from collections.abc import MutableSequence
 from math import sqrt
+from typing import TYPE_CHECKING, Final
 
-from .spatial_path import WORK, Given, Scratch, solve
+from .spatial_path import WORK, solve
 
-BODY = 13
+if TYPE_CHECKING:
+    from ..compiled import Count, Floats, Ints
+
+BODY: Final = 13
 """Numbers of a problem that come before its contacts."""
 
-CONTACT = 12
+CONTACT: Final = 12
 """Numbers of each contact of a problem."""
 
-ANSWER = 7
+ANSWER: Final = 7
 """Numbers of an answer that come before its contacts; each of them has `RESULT`."""
 
-RESULT = 8
+RESULT: Final = 8
 
-INVALID = 4
+INVALID: Final = 4
 """The flag of numbers that no body can have."""
 
-LARGEST = 1e100
-SINGULAR = 1e-21
+LARGEST: Final = 1e100
+SINGULAR: Final = 1e-21
 """An inertia about any axis counts as this part of the trace at least."""
 
-SYMMETRY = 1e-9
+SYMMETRY: Final = 1e-9
 
-ROUNDING = 1e-14
-ROUNDED = 0.01
+ROUNDING: Final = 1e-14
+ROUNDED: Final = 0.01
 """By this part of its trace an inertia may miss the triangle inequality: thin plates are given with few digits."""
 
 
-def is_valid(n: int, problem: Given) -> bool:
+def is_valid(n: Count, problem: Floats) -> bool:
     """Whether a body can have these numbers: finite, with moments of inertia that a distribution of mass can have."""
     for j in range(BODY + n * CONTACT):
         if not -LARGEST <= problem[j] <= LARGEST:
@@ -75,21 +78,21 @@ def determinant(xx: float, yy: float, zz: float, xy: float, xz: float, yz: float
     return xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz)
 
 
-def room(n: int, r: int) -> int:
+def room(n: Count, r: int) -> int:
     """Numbers that an impact of n contacts is worked with, where motion has r coordinates."""
     return 3 * n * r + (15 + WORK) * n + 2 * r
 
 
 def strike(
-    n: int,
-    problem: Given,
+    n: Count,
+    problem: Floats,
     total: bool,
     merge: float,
     threshold: float,
     steps: int,
-    answer: Scratch,
-    work: Scratch,
-    marks: MutableSequence[int],
+    answer: Floats,
+    work: Floats,
+    marks: Ints,
 ) -> int:
     """Fill in the answer to a problem; its flags, as those of `spatial_path.solve`, and `INVALID`."""
     for j in range(ANSWER + RESULT * n):
@@ -162,20 +165,20 @@ def strike(
 
 
 def strike_mechanism(
-    n: int,
-    W: Given,
-    friction: Given,
-    restitution: Given,
-    gaps: Given,
+    n: Count,
+    W: Floats,
+    friction: Floats,
+    restitution: Floats,
+    gaps: Floats,
     total: bool,
     merge: float,
     threshold: float,
     steps: int,
-    start: Given,
-    c: Scratch,
-    impulse: Scratch,
-    work: Scratch,
-    marks: MutableSequence[int],
+    start: Floats,
+    c: Floats,
+    impulse: Floats,
+    work: Floats,
+    marks: Ints,
 ) -> int:
     """Solve the impact of a mechanism from its velocities at the contacts, as `spatial_path.solve` does."""
     m = 3 * n
@@ -205,6 +208,6 @@ def strike_mechanism(
     return solve(n, system, total, merge, threshold, steps, c, impulse, v, work[m * r + r :], marks)
 
 
-def coordinates(n: int) -> int:
+def coordinates(n: Count) -> int:
     """Coordinates of the motion that n contacts of a mechanism see, in sixes."""
     return 6 * ((n + 1) // 2)

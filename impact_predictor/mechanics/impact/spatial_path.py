@@ -1,9 +1,9 @@
 """The impact of any number of contacts in three dimensions, in contact space: how the impulses grow.
 
-Everything here is law code on flat sequences: lists where it runs as Python, arrays where numba compiles it, with the
-same bits. Of n contacts the contact velocities are `c` (3 n): along t1, t2 and the normal of one after the other, and
-impulses go like velocities. The Delassus matrix is W = A A^T, so that impulses p change the motion v by A^T p, and the
-velocities are start + A v. A rigid body has 6 such coordinates of motion, a mechanism up to 3 n.
+Law code on flat sequences (see `mechanics.compiled`), with the same bits in every form. Of n contacts the contact
+velocities are `c` (3 n): along t1, t2 and the normal of one after the other, and impulses go like velocities. The
+Delassus matrix is W = A A^T, so that impulses p change the motion v by A^T p, and the velocities are start + A v. A
+rigid body has 6 such coordinates of motion, a mechanism up to 3 n.
 
 `system` is (rows, start, friction, restitution, gaps): A row by row, the number of its columns a multiple of 6; the
 velocities before the impact; numbers of each contact. `blocks` (`BLOCK` n) has zz, aa, bb, ab, az, bz of the 3 x 3
@@ -18,89 +18,97 @@ of them gives energy, and the error falls with the square of the step.
 
 from __future__ import annotations
 
-from collections.abc import MutableSequence, Sequence
 from math import pi, sqrt
+from typing import TYPE_CHECKING, Final
 
-Given = Sequence[float]
-Scratch = MutableSequence[float]
-System = tuple[Given, Given, Given, Given, Given]
-Springs = tuple[Scratch, Scratch, Scratch, MutableSequence[int]]
+if TYPE_CHECKING:
+    from ..compiled import Count, Floats, Ints
 
-RESTING, LOADING, UNLOADING, OPEN = 0, 1, 2, 3
+    System = tuple[Floats, Floats, Floats, Floats, Floats]
+    Springs = tuple[Floats, Floats, Floats, Ints]
 
-HARDEST = 0.05
+RESTING: Final = 0
+LOADING: Final = 1
+UNLOADING: Final = 2
+OPEN: Final = 3
+
+HARDEST: Final = 0.05
 """Steps resolve the unloading of a spring down to this restitution; below it the spring is stiffer than they are."""
 
-SINGULAR = 1e-12
+SINGULAR: Final = 1e-12
 """Where the determinant of the tangential block is this part of its size, one direction alone moves."""
 
-SLIDING = 1.0 - 1e-9
+SLIDING: Final = 1.0 - 1e-9
 """A contact whose friction is more than this part of its greatest slides."""
 
-PRESSED = 0.1
+PRESSED: Final = 0.1
 """A contact that answers to a push by less than this part, because its own friction presses it, is swept without."""
 
-TOLERANCE = 1e-2
+TOLERANCE: Final = 1e-2
 """Of the sweeps, relative, for one step to a quarter; it falls with their cube, as the error of a step does."""
 
-SWEEPS = 60
+SWEEPS: Final = 60
 
-LOOSE = 1e5
+LOOSE: Final = 1e5
 """Sweeps that still change a velocity by so many tolerances have failed."""
 
-THOROUGH = 1000
+THOROUGH: Final = 1000
 """Sweeps that may be needed where what is left has to vanish."""
 
-ROUNDING = 1e-12
+ROUNDING: Final = 1e-12
 
-UNBLENDED = 0.999
+UNBLENDED: Final = 0.999
 
-FAR = 1e9
+FAR: Final = 1e9
 """The distance, in speeds, of a contact that is open while the others strike."""
 
-STATE_ROUNDING = 1e-4
+STATE_ROUNDING: Final = 1e-4
 """A contact leaves, or slips, faster than this part of the fastest contact before the impact: sweeps err by less ..."""
 
-APPROACHING = 1e-5
+APPROACHING: Final = 1e-5
 """... and one that approaches faster than this part has not been stopped."""
 
-LEAVES, SLIPS, STICKS, NEARS = 0, 1, 2, 3
+LEAVES: Final = 0
+SLIPS: Final = 1
+STICKS: Final = 2
+NEARS: Final = 3
 
-BLOCK = 10
+BLOCK: Final = 10
 """Numbers of a contact's block."""
 
-WORK = 21
+WORK: Final = 21
 """Numbers for each contact that `solve` works with, besides as many as the motion has."""
 
-NOT_CONVERGED, BLENDED = 1, 2
+NOT_CONVERGED: Final = 1
+BLENDED: Final = 2
 
-CUTS = 4
+CUTS: Final = 4
 """How often a step is cut, until compressions end where it does ..."""
 
-NEARLY = 0.9
+NEARLY: Final = 0.9
 """... up to this part of it; what is left of it then is lost to the contact alone."""
 
-SLOW = 0.4
+SLOW: Final = 0.4
 """No step is cut for a contact that is slower than this part of the fastest one, for one step to a quarter."""
 
-LATEST = 4
+LATEST: Final = 4
 """Quarters of its own oscillation after which a contact that has not closed is left to a later impact."""
 
-LONGEST = 100
+LONGEST: Final = 100
 """Quarters of an oscillation after which a path that has not ended is ended plastically: a vice that closes has no end,
 and on a floor paths end within a tenth of it."""
 
 
 def sweep(
-    n: int,
+    n: Count,
     system: System,
     springs: Springs,
-    before: Given,
+    before: Floats,
     middle: float,
     tolerance: float,
     most: int,
-    v: Scratch,
-    p: Scratch,
+    v: Floats,
+    p: Floats,
 ) -> int:
     """Solve for the impulses p of one step by projected Gauss-Seidel; how many sweeps it took, `most` if it failed.
 
@@ -112,7 +120,6 @@ def sweep(
     rows, start, friction, _, _ = system
     softness, bias, blocks, capped = springs
     r, change = len(v), 0.0
-    sixes = range(0, r, 6)
     for count in range(most):
         change = 0.0
         for k in range(n):
@@ -124,7 +131,7 @@ def sweep(
                 continue
             a, b, z = 3 * i, 3 * i + 1, 3 * i + 2
             cz = start[z]
-            for j in sixes:
+            for j in range(0, r, 6):
                 o = z * r + j
                 cz += rows[o] * v[j] + rows[o + 1] * v[j + 1] + rows[o + 2] * v[j + 2]
                 cz += rows[o + 3] * v[j + 3] + rows[o + 4] * v[j + 4] + rows[o + 5] * v[j + 5]
@@ -132,7 +139,7 @@ def sweep(
             if press == 0.0 and cz >= bias[i]:
                 continue
             ca, cb, oldx, oldy, most_drag = start[a], start[b], p[a], p[b], friction[i]
-            for j in sixes:
+            for j in range(0, r, 6):
                 o, q = a * r + j, b * r + j
                 v0, v1, v2, v3, v4, v5 = v[j], v[j + 1], v[j + 2], v[j + 3], v[j + 4], v[j + 5]
                 ca += rows[o] * v0 + rows[o + 1] * v1 + rows[o + 2] * v2
@@ -182,7 +189,7 @@ def sweep(
             change = moved if moved > change else change
             p[a], p[b], p[z] = x, y, new
             x, y = x - oldx, y - oldy
-            for j in sixes:
+            for j in range(0, r, 6):
                 o, q, s = a * r + j, b * r + j, z * r + j
                 v[j] += rows[o] * x + rows[q] * y + rows[s] * step
                 v[j + 1] += rows[o + 1] * x + rows[q + 1] * y + rows[s + 1] * step
@@ -195,7 +202,7 @@ def sweep(
     return most if change > LOOSE * LOOSE * tolerance * tolerance else most - 1
 
 
-def velocities(system: System, v: Given, c: Scratch) -> None:
+def velocities(system: System, v: Floats, c: Floats) -> None:
     """Contact velocities c of a motion v."""
     rows, start, _, _, _ = system
     r = len(v)
@@ -208,7 +215,7 @@ def velocities(system: System, v: Given, c: Scratch) -> None:
         c[j] = speed
 
 
-def measure(at: int, r: int, rows: Given, blocks: Scratch, block: int) -> None:
+def measure(at: Count, r: Count, rows: Floats, blocks: Floats, block: Count) -> None:
     """Fill in the block of the contact whose rows of r numbers begin at a place."""
     aa = bb = zz = ab = az = bz = 0.0
     for k in range(at, at + r):
@@ -226,7 +233,7 @@ def measure(at: int, r: int, rows: Given, blocks: Scratch, block: int) -> None:
     blocks[block + 9] = 1.0 / (half + sqrt(rest * rest + ab * ab)) if half > 0.0 else 0.0
 
 
-def push(system: System, p: Given, v: Scratch) -> None:
+def push(system: System, p: Floats, v: Floats) -> None:
     """Add what impulses p do to a motion v."""
     rows, r = system[0], len(v)
     for j in range(len(p)):
@@ -236,19 +243,19 @@ def push(system: System, p: Given, v: Scratch) -> None:
 
 
 def follow(
-    n: int,
+    n: Count,
     system: System,
     springs: Springs,
-    distances: Given,
+    distances: Floats,
     threshold: float,
     steps: int,
     scale: float,
-    c: Scratch,
-    impulse: Scratch,
-    scratch: Sequence[Scratch],
-    depth: Scratch,
-    deepest: Scratch,
-    phase: MutableSequence[int],
+    c: Floats,
+    impulse: Floats,
+    scratch: tuple[Floats, Floats, Floats, Floats],
+    depth: Floats,
+    deepest: Floats,
+    phase: Ints,
 ) -> int:
     """Follow the path: `c` becomes the velocities after it, `impulse` grows by what acted; whether it came to its end.
 
@@ -385,15 +392,15 @@ def follow(
 
 
 def finish(
-    n: int,
+    n: Count,
     system: System,
     springs: Springs,
     scale: float,
-    c: Scratch,
-    impulse: Scratch,
-    depth: Given,
-    p: Scratch,
-    v: Scratch,
+    c: Floats,
+    impulse: Floats,
+    depth: Floats,
+    p: Floats,
+    v: Floats,
 ) -> int:
     """Stop plastically what still approaches of the contacts that have closed: sweeps as those of `sweep`."""
     softness, bias, _, capped = springs
@@ -416,17 +423,17 @@ def finish(
 
 
 def solve(
-    n: int,
+    n: Count,
     system: System,
     total: bool,
     merge: float,
     threshold: float,
     steps: int,
-    c: Scratch,
-    impulse: Scratch,
-    v: Scratch,
-    work: Scratch,
-    marks: MutableSequence[int],
+    c: Floats,
+    impulse: Floats,
+    v: Floats,
+    work: Floats,
+    marks: Ints,
 ) -> int:
     """Solve an impact: c becomes the velocities after it, `impulse` what acted, v what it did to the motion, and
     marks[:n] the states of the contacts.
@@ -510,14 +517,14 @@ def solve(
 
 
 def lose(
-    n: int,
+    n: Count,
     system: System,
     springs: Springs,
     scale: float,
-    c: Scratch,
-    impulse: Scratch,
-    depth: Given,
-    scratch: Sequence[Scratch],
+    c: Floats,
+    impulse: Floats,
+    depth: Floats,
+    scratch: tuple[Floats, Floats, Floats, Floats],
 ) -> int:
     """Draw an answer to the plastic one by so much that it gains no energy: both are in the same convex cones."""
     start = system[1]

@@ -10,6 +10,7 @@ The change of the twist is computed before the impulses, because it keeps its di
 from __future__ import annotations
 
 from math import inf
+from typing import Final
 
 from .contacts import (
     MINUS,
@@ -30,10 +31,10 @@ from .contacts import (
 )
 from .restitution import newton
 
-SAME_TWIST = 1e-9
+SAME_TWIST: Final = 1e-9
 """Solutions that change the twist by less than this part differently are one solution."""
 
-LINE_ROUNDING = 2e-15
+LINE_ROUNDING: Final = 2e-15
 """The line from A to B, as the moments of the contacts give it, is known up to this part of their sizes."""
 
 RowTriple = tuple[float, float, float]
@@ -45,7 +46,7 @@ Solution = tuple[bool, int, int, float, float, float, float, float, float, float
 Solutions = tuple[int, Solution, Solution]
 """How many different solutions are found; the first of them; the one that is asked for."""
 
-NOT_POSSIBLE: Solution = (False, OPEN, OPEN, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+NOT_POSSIBLE: Final[Solution] = (False, OPEN, OPEN, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
 def new_alone(contacts: ContactRows, gna: float, gnb: float, ctb: float) -> Solution:

@@ -6,7 +6,7 @@
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 from ..impact.contacts import MINUS, OPEN, PLUS
 from ..types import TwoPointBody, Vector
@@ -17,16 +17,16 @@ from .states import JAM, rest, state_of_one, states_of_both
 from .support import FeltSupport, PlanarState
 from .touchdown import Fall, MotionKind
 
-_LOOK_AHEAD = 1e-6
+_LOOK_AHEAD: Final = 1e-6
 """Part of a swing after which the states that follow a rest are asked for: at its very end two states agree."""
-_OVERTURNED = 0.5 * math.pi
+_OVERTURNED: Final = 0.5 * math.pi
 """A body turned farther than this is not carried by its two contacts any more."""
-_MOST_EVENTS = 100
+_MOST_EVENTS: Final = 100
 """More changes of stick, slip and flight before an impact come only from rounding."""
-_MOST_STEPS = 1000
-_STUCK = 1000
+_MOST_STEPS: Final = 1000
+_STUCK: Final = 1000
 """Events without any time between them; more come only from rounding."""
-SLIP_ROUNDING = 1e-12
+SLIP_ROUNDING: Final = 1e-12
 """A slip this small, relative to the speeds it is the difference of, is none: states come through conversions."""
 
 

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import math
 from itertools import combinations
-from typing import Any, NamedTuple
+from typing import Any, Final, NamedTuple
 
 from ...errors import InputError
 from ..bodies import sine_and_cosine
@@ -21,7 +21,7 @@ from ..types import Contact, TwoPointBody, Vector
 from .felt import FrameAcceleration
 from .support import PlanarState
 
-_UNIT = 1e-9
+_UNIT: Final = 1e-9
 """How far contacts may be from what a body that rocks has, relative to its size."""
 
 PlanarWrench = tuple[float, float, float]

@@ -8,22 +8,23 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from enum import IntEnum
-from typing import Any
+from typing import Any, Final
 
 Condition = tuple[float, float]
 """A value, not negative until its event, and its rate (NaN where it is not known)."""
 Sinusoid = tuple[float, float, float]
 """Amplitudes of cosine and sine, and their rate."""
 
-_ROUNDING = 8.0 * 2.0**-52
+_ROUNDING: Final = 8.0 * 2.0**-52
 """A few units in the last place of a value that is a sum of a few terms."""
-_MAX_ADVANCES = 1000
+_MAX_ADVANCES: Final = 1000
 """Several times what the worst grazing needs."""
-_CLOSE, _CLOSE_BY_SECANT = 1e-7, 1e-14
+_CLOSE: Final = 1e-7
+_CLOSE_BY_SECANT: Final = 1e-14
 """After an iteration this small, relative to the root, what is left is its square (by the secant: less of it)."""
-_NEWTON_STEPS = 4
+_NEWTON_STEPS: Final = 4
 """On a cubic, from its secant."""
-_BEYOND = 2.0
+_BEYOND: Final = 2.0
 """A place beyond a step, which goes from 0 to 1."""
 
 

@@ -8,12 +8,20 @@ strike, is cut there.
 from __future__ import annotations
 
 from math import sqrt
+from typing import TYPE_CHECKING, Final
 
-from .reactions import CREEPS, OPEN, SLIPS, STICKS, Floats, Model, Stance, derive, hold, locate, rates
+from .reactions import CREEPS, OPEN, SLIPS, STICKS, derive, hold, locate, rates
 from .stances import NONE, ROUNDING, change, creep, head, margins, near, settle, stand, stays, steady, stop, veers
 
-_NODES = 0.2, 0.3, 0.8, 8.0 / 9.0, 1.0, 1.0
-_STAGES = (
+if TYPE_CHECKING:
+    from ..compiled import Count, Floats
+    from .reactions import Model, Stance
+
+    Scratch = tuple[Floats, Floats, Floats, Floats, Floats, Floats]
+
+# As tuples of any length: one of a known length would be made anew in machine code each time that a part is taken.
+_NODES: Final[tuple[float, ...]] = 0.2, 0.3, 0.8, 8.0 / 9.0, 1.0, 1.0
+_STAGES: Final[tuple[float, ...]] = (
     *(0.2,),
     *(3.0 / 40.0, 9.0 / 40.0),
     *(44.0 / 45.0, -56.0 / 15.0, 32.0 / 9.0),
@@ -21,29 +29,39 @@ _STAGES = (
     *(9017.0 / 3168.0, -355.0 / 33.0, 46732.0 / 5247.0, 49.0 / 176.0, -5103.0 / 18656.0),
     *(35.0 / 384.0, 0.0, 500.0 / 1113.0, 125.0 / 192.0, -2187.0 / 6784.0, 11.0 / 84.0),
 )
-_ERRORS = 71.0 / 57600.0, 0.0, -71.0 / 16695.0, 71.0 / 1920.0, -17253.0 / 339200.0, 22.0 / 525.0, -0.025
-_TOLERANCE = 1e-6
+_ERRORS: Final[tuple[float, ...]] = (
+    71.0 / 57600.0,
+    0.0,
+    -71.0 / 16695.0,
+    71.0 / 1920.0,
+    -17253.0 / 339200.0,
+    22.0 / 525.0,
+    -0.025,
+)
+_TOLERANCE: Final = 1e-6
 """Error of a step, relative to the scales of the motion."""
-_TURN = 0.8
+_TURN: Final = 0.8
 """rad in one step at most: a gap is a polynomial of degree 3 over it, up to `_BEND`."""
-_BEND = 1.0 / 192.0
+_BEND: Final = 1.0 / 192.0
 """Twice the error of such a polynomial, relative to the size and to the fourth power of the turn."""
-_MAX_STEPS = 300
-_MAX_CUTS = 30
+_MAX_STEPS: Final = 300
+_MAX_CUTS: Final = 30
 """More than the secant needs to find the events of a step."""
-_STUCK = 12
+_STUCK: Final = 12
 """Events without any time between them; more come only from rounding."""
-_BLEND = 0.5
+_BLEND: Final = 0.5
 """Of the speed that its friction takes in a step is blended with the slip of a creeping point."""
-_POOR = 4.0
+_POOR: Final = 4.0
 """Error of a step that is cut, relative to the tolerance, that is too much."""
-_GAP = 1e-8
+_GAP: Final = 1e-8
 """How near to zero a gap is found to close, relative to the size."""
-_LIGHT = 1e-6
+_LIGHT: Final = 1e-6
 """Relative to the scale of speeds: a point that approaches more slowly comes to rest, and does not strike."""
-_WILD = 1e6
+_WILD: Final = 1e6
 """Error of the smallest step, relative to the tolerance, that tells a jam."""
-_ON, _STAYS, _EARLY = range(3)
+_ON: Final = 0
+_STAYS: Final = 1
+_EARLY: Final = 2
 """How a step goes that is cut at an event."""
 
 
@@ -77,7 +95,7 @@ def normalise(y: Floats) -> None:
     y[3], y[4], y[5], y[6] = y[3] * length, y[4] * length, y[5] * length, y[6] * length
 
 
-def measure(y: Floats, k: Floats, at: int, points: Floats, frame: Floats, offsets: Floats, out: Floats) -> None:
+def measure(y: Floats, k: Floats, at: Count, points: Floats, frame: Floats, offsets: Floats, out: Floats) -> None:
     """Gap, its rate and its second derivative of each point into `out` (3 n)."""
     wx, wy, wz = y[10], y[11], y[12]
     square, az, alx, aly = wx * wx + wy * wy + wz * wz, k[at + 9], k[at + 10], k[at + 11]
@@ -91,7 +109,7 @@ def measure(y: Floats, k: Floats, at: int, points: Floats, frame: Floats, offset
         out[3 * i + 2] = az + alx * y_ - aly * x + wz * (wx * x + wy * y_ + wz * z) - z * square
 
 
-def crossing(now: Floats, then: Floats, i: int, h: float, dip: float) -> float:
+def crossing(now: Floats, then: Floats, i: Count, h: float, dip: float) -> float:
     """Part of a step at which gap i first falls to 0 or below, or falls there; 2 for none.
 
     Minus the part where the gap may have been there between: it is nearer to 0 than `dip`.
@@ -150,14 +168,14 @@ def crossing(now: Floats, then: Floats, i: int, h: float, dip: float) -> float:
 
 
 def follow(
-    y: Floats, horizon: float, offsets: Floats, model: Model, stance: Stance, scratch: tuple[Floats, ...]
+    y: Floats, horizon: float, offsets: Floats, model: Model, stance: Stance, scratch: Scratch
 ) -> tuple[float, int]:
     """Follow the state y up to the first strike: its time and point; -1 as point where there is none by the horizon.
 
     y becomes the state there, `scratch[2]` (3 n) the gaps with their derivatives, and the stance what stands then.
     """
     points, scale = model[0], model[4]
-    held, label, _, _, _, _, frame, _ = stance
+    held, label, frame = stance[0], stance[1], stance[6]
     k, trial, now, then, before, after = scratch
     size, speed, weight = scale[0], scale[1], scale[2]
     n, time, still = len(label), 0.0, 0
@@ -248,11 +266,11 @@ def follow(
     return horizon, -1
 
 
-def begin(y: Floats, offsets: Floats, model: Model, stance: Stance, scratch: tuple[Floats, ...]) -> int:
+def begin(y: Floats, offsets: Floats, model: Model, stance: Stance, scratch: Scratch) -> int:
     """Label the points that stand, and let stand what touches and does not approach; the point that strikes, or -1."""
     points, scale = model[0], model[4]
-    held, label, _, _, _, _, frame, _ = stance
-    k, _, now, _, _, _ = scratch
+    held, label, frame = stance[0], stance[1], stance[6]
+    k, now = scratch[0], scratch[2]
     size, speed, n = scale[0], scale[1], len(label)
     locate(y, model, stance)
     for slot in range(held[n]):
@@ -282,7 +300,7 @@ def cut_at_event(
     offsets: Floats,
     model: Model,
     stance: Stance,
-    scratch: tuple[Floats, ...],
+    scratch: Scratch,
 ) -> tuple[float, float, int, int]:
     """Cut a step of h s until it ends at the first event in it: its length, its error, the event, and how it goes.
 
@@ -321,7 +339,7 @@ def cut_at_event(
 
 
 def first_event(
-    h: float, turn: float, may_change: bool, model: Model, stance: Stance, scratch: tuple[Floats, ...]
+    h: float, turn: float, may_change: bool, model: Model, stance: Stance, scratch: Scratch
 ) -> tuple[int, float, bool]:
     """The first event in a step of h s, the part of the step before it, and whether it was at its border before.
 
@@ -330,7 +348,7 @@ def first_event(
     """
     size, speed = model[4][0], model[4][1]
     label = stance[1]
-    _, _, now, then, before, after = scratch
+    now, then, before, after = scratch[2], scratch[3], scratch[4], scratch[5]
     n, bent = len(label), turn * h
     dip = _BEND * size * bent * bent * bent * bent
     event, cut, reached, is_early = -1, 1.0, -1, False
@@ -362,7 +380,15 @@ def first_event(
 
 
 def close(
-    time: float, h: float, point: int, y: Floats, k: Floats, now: Floats, offsets: Floats, model: Model, stance: Stance
+    time: float,
+    h: float,
+    point: Count,
+    y: Floats,
+    k: Floats,
+    now: Floats,
+    offsets: Floats,
+    model: Model,
+    stance: Stance,
 ) -> float:
     """Move the state, by the derivative at the end of a step of h s, to where a gap is zero; the time there."""
     size = model[4][0]

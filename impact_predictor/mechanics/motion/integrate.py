@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from ..types import Vector
 
@@ -25,13 +25,13 @@ _GAINS = tuple(
 """What the difference of two results of extrapolation counts in the next one (Aitken and Neville, in the square)."""
 GROWTH = (0.3, 3.0, 4.0, 3.0, 2.0, 1.3, 0.9)
 """Factor on the next step, by the rows of extrapolation that this one took (0: it did not settle)."""
-NEAR = 1e-6
+NEAR: Final = 1e-6
 """Way of a nudge, relative to the step that it is within: its third power is rounding."""
-_ROUNDING = 1e-13
+_ROUNDING: Final = 1e-13
 """Part of the accelerations that is rounding: they may be small differences of large ones."""
-_DENSE = 1e-10
+_DENSE: Final = 1e-10
 """Error of the rates of dense output, relative to the rates."""
-_DEEPEST = 12
+_DEEPEST: Final = 12
 """Halvings of a step, or of a phase known in closed form, for its dense output."""
 
 Rate = Callable[[float, float, float, float, float], tuple[float, float]]

@@ -7,7 +7,7 @@ body turns at a constant rate in the world.
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from typing import Any, Final, NamedTuple
 
 from ..impact.contacts import OPEN, PLUS, STICK
 from ..types import Vector
@@ -19,25 +19,26 @@ from .integrate import GROWTH, NEAR, Instant, add_dense, middle_of, nudged, step
 from .pivot import Pivot, roll, turn
 from .support import FeltSupport, FixedSupport, MovingSupport, PlanarState
 
-_FIRST_STEP, _STEP_OF_FLIGHT = 0.9, 0.25
+_FIRST_STEP: Final = 0.9
+_STEP_OF_FLIGHT: Final = 0.25
 """Length of a first step, and of the longest one in flight, in times that the motion needs to change."""
-_BEYOND = 1.1
+_BEYOND: Final = 1.1
 """A step goes as much farther than where its parabola ends the phase."""
-_LEAST = 0.1
+_LEAST: Final = 0.1
 """But it is not shorter than this part of what it could be."""
-_SMALLEST = 1e-10
+_SMALLEST: Final = 1e-10
 """Relative to the first step. Where smaller steps are refused, no smooth motion goes on."""
-_PART_OF_PERIOD = 0.125
+_PART_OF_PERIOD: Final = 0.125
 """The longest step, in shortest periods of the support: none of its swings is stepped over."""
-_BORDER = 1e-12
+_BORDER: Final = 1e-12
 """A condition that starts below this part of the weight starts at its border."""
-_SHORTEST = 1e-9
+_SHORTEST: Final = 1e-9
 """What begins at its border and ends sooner than this, in times of the body's swing, ends then."""
-_FINER = 0.01
+_FINER: Final = 0.01
 """Tolerance of dense output, relative to that of steps: it must meet an end that is known exactly."""
-_ROUNDING = 1e-14
+_ROUNDING: Final = 1e-14
 """A gap below this part of what the body moved is rounding."""
-_SPEED_ROUNDING = 1e-15
+_SPEED_ROUNDING: Final = 1e-15
 """Part of a body's speeds that is rounding in the rate of a gap."""
 _GAUSS = (
     (0.0469100770306680, 0.1184634425280946),

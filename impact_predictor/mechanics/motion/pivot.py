@@ -8,14 +8,14 @@ reaction at every angle, Carlson's integral R_F the time.
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 from ..types import Vector
 from .events import Event, first_descent
 
-_ROUNDING = 8.0 * 2.0**-52
+_ROUNDING: Final = 8.0 * 2.0**-52
 """A few units in the last place of a value that is a sum of a few terms."""
-_FULL_TURN = 2.0 * math.pi
+_FULL_TURN: Final = 2.0 * math.pi
 
 
 class Pivot(NamedTuple):

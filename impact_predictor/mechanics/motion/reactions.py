@@ -1,9 +1,9 @@
 """Reactions of a plane support on the points of a rigid body in three dimensions, and the accelerations that follow.
 
-Written once for numba and for plain Python: loops over flat lists or arrays, and only operations that round alike in
-both. The support is z = 0 of its frame, out of it z. A state is 13 numbers: place of the mass centre, orientation as a
-quaternion (x, y, z, w) of any length, velocity and angular velocity in that frame, along its axes. Masses are 1, so
-that forces are accelerations and inertias squares of radii of gyration.
+Law code on flat sequences (see `mechanics.compiled`), with only operations that round alike in every form. The support
+is z = 0 of its frame, out of it z. A state is 13 numbers: place of the mass centre, orientation as a quaternion
+(x, y, z, w) of any length, velocity and angular velocity in that frame, along its axes. Masses are 1, so that forces
+are accelerations and inertias squares of radii of gyration.
 
 A point that stands sticks or slips. Points are solved one after the other until nothing changes (Gauss and Seidel on
 the Delassus matrix, whose blocks W are those of single points): forces on the body change its acceleration, and each
@@ -24,34 +24,38 @@ frame: the body's axes as columns of a matrix (9), and the inverse inertia along
 
 from __future__ import annotations
 
-from collections.abc import MutableSequence
 from math import sqrt
+from typing import TYPE_CHECKING, Final
 
-Floats = MutableSequence[float]
-Ints = MutableSequence[int]
-Model = tuple[Floats, Floats, Floats, Floats, Floats]
-Stance = tuple[Ints, Ints, Floats, Floats, Floats, Floats, Floats, Floats]
+if TYPE_CHECKING:
+    from ..compiled import Count, Floats, Ints
 
-OPEN, STICKS, SLIPS, CREEPS = 0, 1, 2, 3
+    Model = tuple[Floats, Floats, Floats, Floats, Floats]
+    Stance = tuple[Ints, Ints, Floats, Floats, Floats, Floats, Floats, Floats]
+
+OPEN: Final = 0
+STICKS: Final = 1
+SLIPS: Final = 2
+CREEPS: Final = 3
 """A point that creeps slips so slowly that the direction of its slip is stiff: it is blended with that before."""
-_SWEEPS = 100
+_SWEEPS: Final = 100
 """Several times what two points take; more take points that share a load in many ways."""
-_CONVERGED = 1e-9
+_CONVERGED: Final = 1e-9
 """Change of a force in one sweep that ends them, relative to the scale of accelerations."""
-_TURNS = 60
+_TURNS: Final = 60
 """Iterations for the direction in which a slip begins."""
-_JAMMED = 1e-3
+_JAMMED: Final = 1e-3
 """Relative to W's normal element. What a normal force needs to press its slipping point away from the support."""
-_SHARED = 1e-7
+_SHARED: Final = 1e-7
 """A pivot below is zero: the other points hold this one, too."""
-_TOO_MUCH = 1e5
+_TOO_MUCH: Final = 1e5
 """Relative to the scale of accelerations: a force that grows so jams."""
 
 
 def locate(y: Floats, model: Model, stance: Stance) -> None:
     """Turn the body's inertia and the arms of its standing points to the support's axes, and find their W."""
-    points, body, _, _, _ = model
-    held, label, _, _, arms, blocks, frame, _ = stance
+    points, body = model[0], model[1]
+    held, label, arms, blocks, frame = stance[0], stance[1], stance[4], stance[5], stance[6]
     a, b, c, d = y[3], y[4], y[5], y[6]
     s = 2.0 / (a * a + b * b + c * c + d * d)
     r0, r1, r2 = 1.0 - s * (b * b + c * c), s * (a * b - c * d), s * (a * c + b * d)
@@ -86,7 +90,7 @@ def locate(y: Floats, model: Model, stance: Stance) -> None:
         blocks[o + 9], blocks[o + 10], blocks[o + 11] = t * c1, t * c2, t * (xy * xz - xx * yz)
 
 
-def derive(time: float, y: Floats, out: Floats, at: int, cones: bool, model: Model, stance: Stance) -> int:
+def derive(time: float, y: Floats, out: Floats, at: Count, cones: bool, model: Model, stance: Stance) -> int:
     """Derivative of the state y into out[at:at + 13]; -1, or the point whose slip no finite reaction goes with.
 
     With `cones` the forces obey non-penetration and Coulomb's law in accelerations. Without, a point that sticks is
@@ -94,7 +98,7 @@ def derive(time: float, y: Floats, out: Floats, at: int, cones: bool, model: Mod
     leave their cones.
     """
     points, body, pull, friction, scale = model
-    held, label, _, forces, arms, blocks, frame, _ = stance
+    held, label, forces, arms, blocks, frame = stance[0], stance[1], stance[3], stance[4], stance[5], stance[6]
     locate(y, model, stance)
     vx, vy, vz, wx, wy, wz = y[7], y[8], y[9], y[10], y[11], y[12]
     ax, ay, az = pull[0] + pull[3] * time, pull[1] + pull[4] * time, pull[2] + pull[5] * time
@@ -188,15 +192,15 @@ def derive(time: float, y: Floats, out: Floats, at: int, cones: bool, model: Mod
     return jam
 
 
-def rates(time: float, y: Floats, out: Floats, at: int, cones: bool, model: Model, stance: Stance) -> int:
+def rates(time: float, y: Floats, out: Floats, at: Count, cones: bool, model: Model, stance: Stance) -> int:
     """As `derive`, which becomes a part of its callers where it is compiled: this one is called."""
     return derive(time, y, out, at, cones, model, stance)
 
 
-def drag(y: Floats, i: int, model: Model, stance: Stance) -> tuple[float, float]:
+def drag(y: Floats, i: Count, model: Model, stance: Stance) -> tuple[float, float]:
     """Friction on point i, which slips, over its normal force."""
     friction, scale = model[3], model[4]
-    _, label, toward, _, arms, _, _, _ = stance
+    label, toward, arms = stance[1], stance[2], stance[4]
     dx, dy = toward[2 * i], toward[2 * i + 1]
     sx = y[7] + y[11] * arms[3 * i + 2] - y[12] * arms[3 * i + 1]
     sy = y[8] + y[12] * arms[3 * i] - y[10] * arms[3 * i + 2]
@@ -210,7 +214,7 @@ def drag(y: Floats, i: int, model: Model, stance: Stance) -> tuple[float, float]
 
 def forget(stance: Stance) -> None:
     """Take all forces away."""
-    held, label, _, forces, _, _, _, _ = stance
+    held, label, forces = stance[0], stance[1], stance[3]
     for k in range(held[len(label)]):
         forces[3 * held[k]] = forces[3 * held[k] + 1] = forces[3 * held[k] + 2] = 0.0
 
@@ -218,7 +222,7 @@ def forget(stance: Stance) -> None:
 def _hold_all(
     y: Floats,
     out: Floats,
-    at: int,
+    at: Count,
     ax: float,
     ay: float,
     az: float,
@@ -234,7 +238,8 @@ def _hold_all(
     load in many ways, which then stays as it was, and negative where a slip jams.
     """
     scale = model[4]
-    held, label, _, forces, arms, blocks, frame, rows = stance
+    held, label, forces, arms = stance[0], stance[1], stance[3], stance[4]
+    frame, rows = stance[6], stance[7]
     count, size = held[len(label)], 0
     for k in range(count):
         size += 3 if label[held[k]] == STICKS else 1
@@ -334,7 +339,9 @@ def _hold_all(
     return jam
 
 
-def fill(y: Floats, out: Floats, at: int, ax: float, ay: float, az: float, alx: float, aly: float, alz: float) -> None:
+def fill(
+    y: Floats, out: Floats, at: Count, ax: float, ay: float, az: float, alx: float, aly: float, alz: float
+) -> None:
     """Write the derivative of a state with this acceleration."""
     wx, wy, wz = y[10], y[11], y[12]
     out[at], out[at + 1], out[at + 2] = y[7], y[8], y[9]
@@ -370,7 +377,7 @@ def share(held: Ints, label: Ints, arms: Floats, forces: Floats) -> None:
                 forces[3 * i + 2], forces[3 * j + 2] = forces[3 * i + 2] + push * z, forces[3 * j + 2] - push * z
 
 
-def coulomb(blocks: Floats, o: int, bx: float, by: float, bz: float, friction: float) -> tuple[float, float, float]:
+def coulomb(blocks: Floats, o: Count, bx: float, by: float, bz: float, friction: float) -> tuple[float, float, float]:
     """Force on a point without slip whose acceleration is b + W F, by non-penetration and Coulomb's law.
 
     It lifts, sticks, or begins to slip along the acceleration that friction leaves it, W being blocks[o:o + 12].
@@ -419,7 +426,7 @@ def hold(y: Floats, stance: Stance, enough: float) -> None:
 
     A point that sticks comes to rest, one that slips goes on along the support.
     """
-    held, label, _, _, arms, blocks, frame, _ = stance
+    held, label, arms, blocks, frame = stance[0], stance[1], stance[4], stance[5], stance[6]
     count = held[len(label)]
     jxx, jyy, jzz, jxy, jxz, jyz = frame[9], frame[10], frame[11], frame[12], frame[13], frame[14]
     vx, vy, vz, wx, wy, wz = y[7], y[8], y[9], y[10], y[11], y[12]

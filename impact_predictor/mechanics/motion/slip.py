@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Final
 
 from ..impact.contacts import MINUS, OPEN, PLUS
 from ..types import Contact, TwoPointBody, Vector
@@ -12,10 +13,11 @@ from .phases import MotionPhase, RockingProblem
 from .pivot import Pivot
 from .support import FixedSupport
 
-_MAX_STEPS = 1000
-_STEP = 0.01
+_MAX_STEPS: Final = 1000
+_STEP: Final = 0.01
 """Error allowed to a step, relative to the one aimed at: errors grow on the way."""
-_FAR, _LONGEST = 1e6, 1e300
+_FAR: Final = 1e6
+_LONGEST: Final = 1e300
 """rad, s: how far and how long a body is followed that nothing else stops."""
 
 

@@ -115,23 +115,23 @@ def state_of(numbers: Sequence[float]) -> SpatialState:
     return SpatialState((px, py, pz), (qx, qy, qz, qw), (vx, vy, vz), (wx, wy, wz))
 
 
-LAW_CODE = (reactions, stances, falling, spatial_problem)
+USED = (reactions.__name__, stances.__name__, falling.__name__)
 
-INLINED = (reactions.derive, reactions.fill, reactions.locate, falling.measure, falling.crossing, stances.margins)
+INLINED = ("derive", "fill", "locate", "measure", "crossing", "margins")
 """Law functions that become a part of those that call them: calls with so many sequences take a third of the time."""
 
 
 @cache
 def solver() -> Callable[..., int]:
     """The law code that finds a touchdown, compiled if that can be; the first time on a machine this takes seconds."""
-    return door(make_fall, LAW_CODE, INLINED)
+    return door(make_fall, spatial_problem, USED, INLINED)
 
 
-def make_fall(law_code: str) -> Callable[..., int]:
+def make_fall(law_code: str, law: Any) -> Callable[..., int]:
     """The function that finds a touchdown; numba keeps what it compiled under the value of `law_code`."""
 
     def fall(n: int, numbers: Any, marks: Any, work: Any, out: Any) -> int:
         law_code  # noqa: B018
-        return spatial_problem.fall(n, numbers, marks, work, out)
+        return law.fall(n, numbers, marks, work, out)  # type: ignore[no-any-return]
 
     return fall

@@ -9,24 +9,29 @@ its gap and its rate.
 from __future__ import annotations
 
 from math import sqrt
+from typing import TYPE_CHECKING, Final
 
 from .falling import follow, normalise
-from .reactions import OPEN, Floats, Ints, Model, Stance, locate
+from .reactions import OPEN, locate
 
-_STICKY = 1e6
+if TYPE_CHECKING:
+    from ..compiled import Count, Floats, Ints
+    from .reactions import Model, Stance
+
+_STICKY: Final = 1e6
 """More friction makes no difference."""
-_LARGEST = 1e100
+_LARGEST: Final = 1e100
 
-INPUT = 32
+INPUT: Final = 32
 """Numbers of a problem before those of its points: horizon, state, inertia over mass, pull; friction and points."""
-OUTPUT = 14
+OUTPUT: Final = 14
 """Numbers of an answer before those of its points: time and state; gap and rate of each."""
-WORK = 162, 38, 9
+WORK: Final = 162, 38, 9
 """Numbers to work with: some, some for each point, and some for each pair of points."""
-INVALID = -2
+INVALID: Final = -2
 
 
-def prepare(n: int, numbers: Floats, marks: Ints, work: Floats) -> tuple[bool, Floats, Floats, Model, Stance]:
+def prepare(n: Count, numbers: Floats, marks: Ints, work: Floats) -> tuple[bool, Floats, Floats, Model, Stance]:
     """Whether a body can have these numbers; its state, the offsets of its points' gaps, and what moves it."""
     y, body, pull, scale, frame = work[0:13], work[13:26], work[26:39], work[39:43], work[43:58]
     o = 58
@@ -93,7 +98,7 @@ def fill_body(numbers: Floats, body: Floats) -> bool:
     return True
 
 
-def fall(n: int, numbers: Floats, marks: Ints, work: Floats, out: Floats) -> int:
+def fall(n: Count, numbers: Floats, marks: Ints, work: Floats, out: Floats) -> int:
     """The point that strikes next, -1 for none, INVALID for numbers that no body can have; the marks of what stands."""
     valid, y, offsets, model, stance = prepare(n, numbers, marks, work)
     if not valid:

@@ -6,34 +6,41 @@ Written as `reactions` is, whose `model` and `stance` it takes; k is the derivat
 from __future__ import annotations
 
 from math import sqrt
+from typing import TYPE_CHECKING, Final
 
-from .reactions import CREEPS, OPEN, SLIPS, STICKS, Floats, Ints, Model, Stance, drag, hold, locate, rates
+from .reactions import CREEPS, OPEN, SLIPS, STICKS, drag, hold, locate, rates
 
-_FORCE, _SLIP = 1e-6, 1e-7
+if TYPE_CHECKING:
+    from ..compiled import Count, Floats, Ints
+    from .reactions import Model, Stance
+
+_FORCE: Final = 1e-6
+_SLIP: Final = 1e-7
 """How near to its zero an event is found, relative to the scales. Forces are continuous there."""
-_ALIKE = 10.0
+_ALIKE: Final = 10.0
 """Factor on these within which the events of several points are one."""
-_CREEPS = 1e-3
+_CREEPS: Final = 1e-3
 """Relative to the scale of speeds: a slower slip creeps."""
-_VEERS = 1e-4
+_VEERS: Final = 1e-4
 """Error in a step, relative to the scale of speeds, by the direction of a creeping point's friction, which lags."""
-NONE = 1e-8
+NONE: Final = 1e-8
 """Relative to the scale of speeds: a slower slip is none."""
-ROUNDING = 1e-10
+ROUNDING: Final = 1e-10
 """Relative to the scales: gaps, speeds and accelerations below count as none."""
-_RESTS = 1e-6
+_RESTS: Final = 1e-6
 """Relative to the scales: a body is at rest that moves and is accelerated by less."""
-_STEADY = 2.0
+_STEADY: Final = 2.0
 """Steps, in the time in which friction would stop the slowest slip: it takes 3.3 to make them unstable."""
-_SAFE = 1.1
+_SAFE: Final = 1.1
 """Factor on the overturning moment of friction below which a body surely lies flat."""
-_TINY, _LONG = 1e-300, 1e6
+_TINY: Final = 1e-300
+_LONG: Final = 1e6
 
 
 def settle(time: float, y: Floats, k: Floats, model: Model, stance: Stance) -> None:
     """Which of the standing points stick, slip and lift, with the derivative of y into k[:13]; a jam ends its slip."""
     friction, scale = model[3], model[4]
-    held, label, toward, forces, arms, _, _, _ = stance
+    held, label, toward, forces, arms = stance[0], stance[1], stance[2], stance[3], stance[4]
     n = len(label)
     scale[3] = scale[1]
     for slot in range(held[n]):
@@ -71,9 +78,9 @@ def settle(time: float, y: Floats, k: Floats, model: Model, stance: Stance) -> N
     rates(time, y, k, 0, False, model, stance)
 
 
-def stand(y: Floats, i: int, model: Model, stance: Stance) -> None:
+def stand(y: Floats, i: Count, model: Model, stance: Stance) -> None:
     """Let point i stand: it slips if it moves along the support."""
-    held, label, _, forces, _, _, _, _ = stance
+    held, label, forces = stance[0], stance[1], stance[3]
     n = len(label)
     held[held[n]] = i
     held[n] += 1
@@ -84,9 +91,9 @@ def stand(y: Floats, i: int, model: Model, stance: Stance) -> None:
         label[i] = STICKS
 
 
-def drop(i: int, stance: Stance) -> None:
+def drop(i: Count, stance: Stance) -> None:
     """Take point i out of those that stand."""
-    held, label, _, forces, _, _, _, _ = stance
+    held, label, forces = stance[0], stance[1], stance[3]
     n, kept = len(label), 0
     for slot in range(held[n]):
         if held[slot] != i:
@@ -96,10 +103,10 @@ def drop(i: int, stance: Stance) -> None:
     forces[3 * i] = forces[3 * i + 1] = forces[3 * i + 2] = 0.0
 
 
-def head(y: Floats, i: int, model: Model, stance: Stance) -> float:
+def head(y: Floats, i: Count, model: Model, stance: Stance) -> float:
     """Take the direction of point i's slip; its speed, relative to the scale."""
     friction = model[3]
-    _, label, toward, _, arms, _, _, _ = stance
+    label, toward, arms = stance[1], stance[2], stance[4]
     sx = y[7] + y[11] * arms[3 * i + 2] - y[12] * arms[3 * i + 1]
     sy = y[8] + y[12] * arms[3 * i] - y[10] * arms[3 * i + 2]
     slip = sqrt(sx * sx + sy * sy)
@@ -119,7 +126,7 @@ def head(y: Floats, i: int, model: Model, stance: Stance) -> float:
 
 def stop(y: Floats, model: Model, stance: Stance, slowest: float) -> None:
     """Let points stick that slip more slowly than a part of the scale of speeds; all, by an impulse, where they jam."""
-    held, label, _, forces, _, _, _, _ = stance
+    held, label, forces = stance[0], stance[1], stance[3]
     locate(y, model, stance)
     for slot in range(held[len(label)]):
         i = held[slot]
@@ -135,7 +142,7 @@ def margins(y: Floats, model: Model, stance: Stance, out: Floats) -> None:
     is left of its cone of friction or of its slip.
     """
     friction, scale = model[3], model[4]
-    held, label, toward, forces, arms, _, _, _ = stance
+    held, label, toward, forces, arms = stance[0], stance[1], stance[2], stance[3], stance[4]
     for k in range(held[len(label)]):
         i = held[k]
         out[2 * i] = forces[3 * i + 2] / scale[2]
@@ -148,14 +155,14 @@ def margins(y: Floats, model: Model, stance: Stance, out: Floats) -> None:
             out[2 * i + 1] = (friction[i] * forces[3 * i + 2] - sqrt(tx * tx + ty * ty)) / scale[2]
 
 
-def near(m: int, label: Ints) -> float:
+def near(m: Count, label: Ints) -> float:
     """How near to zero a margin counts as zero."""
     return _SLIP if m % 2 == 1 and label[m // 2] >= SLIPS else _FORCE
 
 
-def change(event: int, y: Floats, before: Floats, model: Model, stance: Stance) -> None:
+def change(event: Count, y: Floats, before: Floats, model: Model, stance: Stance) -> None:
     """Let the point of this margin lift, stick, or begin to slip, with all others that do so now."""
-    held, label, toward, forces, _, _, _, _ = stance
+    held, label, toward, forces = stance[0], stance[1], stance[2], stance[3]
     kind, which, count = label[event // 2], event % 2, held[len(label)]
     if which == 1 and kind >= SLIPS:
         stop(y, model, stance, _CREEPS if head(y, event // 2, model, stance) <= _CREEPS else 0.0)
@@ -176,7 +183,7 @@ def change(event: int, y: Floats, before: Floats, model: Model, stance: Stance) 
 
 def veers(y: Floats, h: float, model: Model, stance: Stance) -> bool:
     """Whether the friction of a creeping point turns too far in a step."""
-    held, label, toward, forces, arms, _, _, _ = stance
+    held, label, toward, forces = stance[0], stance[1], stance[2], stance[3]
     for slot in range(held[len(label)]):
         i = held[slot]
         if label[i] == CREEPS:
@@ -189,7 +196,7 @@ def veers(y: Floats, h: float, model: Model, stance: Stance) -> bool:
 def steady(y: Floats, model: Model, stance: Stance) -> float:
     """The longest step in which the directions of slips stay stable: small against slip over friction."""
     friction, scale = model[3], model[4]
-    held, label, _, forces, arms, blocks, _, _ = stance
+    held, label, forces, arms, blocks = stance[0], stance[1], stance[3], stance[4], stance[5]
     least, most = _LONG * scale[1], 0.0
     for slot in range(held[len(label)]):
         i = held[slot]
@@ -203,7 +210,7 @@ def steady(y: Floats, model: Model, stance: Stance) -> float:
 
 def creep(y: Floats, stance: Stance) -> float:
     """The largest velocity that a standing point should not have, in m/s."""
-    held, label, _, _, arms, _, _, _ = stance
+    held, label, arms = stance[0], stance[1], stance[4]
     most = 0.0
     for slot in range(held[len(label)]):
         i = held[slot]
@@ -253,7 +260,7 @@ def lies(time: float, y: Floats, k: Floats, model: Model, stance: Stance) -> boo
     It needs the derivative k of its free motion at the time.
     """
     friction, scale = model[3], model[4]
-    held, label, _, _, arms, _, frame, _ = stance
+    held, label, arms, frame = stance[0], stance[1], stance[4], stance[6]
     n = len(label)
     count, press = held[n], -k[9]
     det = frame[9] * frame[10] - frame[12] * frame[12]

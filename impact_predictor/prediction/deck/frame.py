@@ -20,6 +20,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from functools import partial
 from math import hypot
+from typing import Final
 
 from ...mechanics.motion import Fall, PlanarState, next_strike
 from ...mechanics.motion.felt import FeltPolynomials, FrameAcceleration
@@ -29,11 +30,11 @@ from ..scene import Scene
 from ..types import Felt, Moment, Prediction, Quaternion, Sample, Vector3
 from ..vectors import add, axes_of, composed, cross, dot, times, to_body, to_world, turned
 
-APART = 1e-6
+APART: Final = 1e-6
 """Contacts nearer to each other in the plane than this part of their distance from the mass centre are one."""
 
-PART = 0.25  # length in s of one polynomial
-NODES = 7
+PART: Final = 0.25  # length in s of one polynomial
+NODES: Final = 7
 """Values that a polynomial goes through. Of what swings at w rad/s it misses (w / 8 s)^7 / 322560: 2e-10 at 2 rad/s."""
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import partial
 from math import sin, sqrt
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 from ...stamps import NANOSECONDS
 from ..types import Felt, Moment, Quaternion, Vector3
@@ -15,14 +15,14 @@ NOWHERE: Vector3 = (0.0, 0.0, 0.0)
 
 LEVEL: Quaternion = (0.0, 0.0, 0.0, 1.0)
 
-AVERAGED = 60.0  # s over which means are taken, about ten waves
-FIRST_MEAN = 5.0
+AVERAGED: Final = 60.0  # s over which means are taken, about ten waves
+FIRST_MEAN: Final = 5.0
 """s for which the support counts as level and slow before its first message: a mean does not begin with a wave."""
 
 SLOW = 1e-6, 1e-6
 """Mean squares of the angular velocity (rad/s) and of its derivative then: waves of 6 s, too low to be seen."""
 
-QUARTER = 1.4  # rad after which a wave is no longer like what it was: nearly a quarter of it
+QUARTER: Final = 1.4  # rad after which a wave is no longer like what it was: nearly a quarter of it
 
 
 class SupportState(NamedTuple):

@@ -23,7 +23,7 @@ FIRST: Final = 5.0  # s for which the change counts that is taken for granted
 AVERAGED_STEPS: Final = 50  # messages over which their rate is averaged
 FAR: Final = 2.0  # times the least error, from which on a window is told to be wrong
 
-FLAT = 1e-6
+FLAT: Final = 1e-6
 """Of the determinant of evenly spread samples: with less their stamps lie in two clumps, which tell no curvature."""
 
 

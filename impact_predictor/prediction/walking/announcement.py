@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from math import erf, sqrt
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 from ...stamps import NANOSECONDS
 from ..planar import hardly
@@ -16,15 +16,17 @@ from .ground import Ground
 from .rest import falls
 from .trajectory import FootTrajectory
 
-AHEAD = 2.0  # a landing is announced when it is no further ahead than so many times as long as the point has come down,
-LEAST_DESCENT = 0.02  # ... and that for so many s,
-SURE = 0.01  # ... once its time has a standard deviation below so many s ...
-UNSURE = 2.0  # ... and kept until it has one that is so many times larger
+AHEAD: Final = (
+    2.0  # a landing is announced when it is no further ahead than so many times as long as the point has come down,
+)
+LEAST_DESCENT: Final = 0.02  # ... and that for so many s,
+SURE: Final = 0.01  # ... once its time has a standard deviation below so many s ...
+UNSURE: Final = 2.0  # ... and kept until it has one that is so many times larger
 
-BEYOND = 2.0  # standard deviations by which the ground may lie elsewhere, and a landing is told all the same
+BEYOND: Final = 2.0  # standard deviations by which the ground may lie elsewhere, and a landing is told all the same
 
 # A point that still comes down so many contact tolerances below the expected level has surely met no ground there.
-THROUGH = 0.5
+THROUGH: Final = 0.5
 
 
 class ExpectedLanding(NamedTuple):

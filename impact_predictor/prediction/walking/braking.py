@@ -6,20 +6,22 @@ from collections.abc import Sequence
 from itertools import pairwise
 from math import sqrt
 from operator import mul
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 from ...stamps import NANOSECONDS
 from ..vectors import total
 from .cubic import GapNoise, PointFrame
 
-APART = 0.002  # s between frames that are looked at
-COURSE = 0.01  # s over which the rates are lines, before and after the ground brakes the point
-FEWEST = 3  # frames of those
-STOPS = 3.0  # frames in which soft ground stops a point at least, and times as long at most as if it braked on as first
-SUDDEN = 0.4  # part of how the ground brakes a point by which drives may have braked it just before
-SHOWS = 5.0  # standard deviations by which it brakes more than before
-YIELDING = 0.3  # part of its speed that is left when soft ground has braked it most ...
-BOW = 0.02  # ... and by which a line through that braking begins too low: springs with critical damping bend it
+APART: Final = 0.002  # s between frames that are looked at
+COURSE: Final = 0.01  # s over which the rates are lines, before and after the ground brakes the point
+FEWEST: Final = 3  # frames of those
+STOPS: Final = (
+    3.0  # frames in which soft ground stops a point at least, and times as long at most as if it braked on as first
+)
+SUDDEN: Final = 0.4  # part of how the ground brakes a point by which drives may have braked it just before
+SHOWS: Final = 5.0  # standard deviations by which it brakes more than before
+YIELDING: Final = 0.3  # part of its speed that is left when soft ground has braked it most ...
+BOW: Final = 0.02  # ... and by which a line through that braking begins too low: springs with critical damping bend it
 
 
 class BrakedCourse(NamedTuple):

@@ -5,21 +5,21 @@ from __future__ import annotations
 import operator
 from collections.abc import Sequence
 from math import hypot, sqrt
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 from ...stamps import NANOSECONDS
 from ..types import Sample, Vector3
 from ..vectors import add, axes_of, cross, dot, lines, to_body, total
 from .stance import FootPoint
 
-APART = 4_000_000  # ns between the frames that are looked at: more of them cost more than they tell
-LONGEST = 80  # frames after which a stance is taken to be another one ...
-FEWEST = 8  # ... and that it has at least
-ENOUGH = 8  # stances from which on the delay is told
-MEMORY = 100  # stances over which it is averaged
-LEAST = 2.5e-3  # s: below that it may be feet that yield or bounce a little, which move with the trunk ...
-CLOSER = 0.5e-3  # ... but a delay that is there is worth to be taken out better than that
-SURE = 3.0  # standard deviations that tell a delay from what is taken out
+APART: Final = 4_000_000  # ns between the frames that are looked at: more of them cost more than they tell
+LONGEST: Final = 80  # frames after which a stance is taken to be another one ...
+FEWEST: Final = 8  # ... and that it has at least
+ENOUGH: Final = 8  # stances from which on the delay is told
+MEMORY: Final = 100  # stances over which it is averaged
+LEAST: Final = 2.5e-3  # s: below that it may be feet that yield or bounce a little, which move with the trunk ...
+CLOSER: Final = 0.5e-3  # ... but a delay that is there is worth to be taken out better than that
+SURE: Final = 3.0  # standard deviations that tell a delay from what is taken out
 
 
 class Delay(NamedTuple):

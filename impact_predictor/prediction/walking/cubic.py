@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from math import sqrt
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 from ...stamps import NANOSECONDS
 from ..types import Vector3
 
-SCALE = 0.1
+SCALE: Final = 0.1
 """Times are counted in so many s while sums of their powers are taken, which keeps those near one."""
 
-SINGULAR = 1e-12  # a pivot below this part of its diagonal is rounding: the frames are too few instants for a cubic
+SINGULAR: Final = (
+    1e-12  # a pivot below this part of its diagonal is rounding: the frames are too few instants for a cubic
+)
 
 Cubic = tuple[float, float, float, float]
 """Coefficients, from that of the zeroth power."""

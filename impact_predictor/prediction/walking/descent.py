@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Sequence
 from math import exp, log, sqrt
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 from ...stamps import NANOSECONDS
 from ..vectors import total
@@ -27,32 +27,32 @@ FIRST_MEAN: tuple[Cubic, Cubic] = ((0.0, -0.5, 0.0, 0.0), (0.0, 0.0, 15.0, 0.0))
 """Of a landing that strikes, and of one that brakes to rest, before any was seen: height, rate, acceleration, jerk."""
 FIRST_DEVIATION: tuple[Cubic, Cubic] = ((5e-4, 0.25, 30.0, 1000.0), (1e-4, 0.02, 30.0, 1000.0))
 LEAST_DEVIATION: tuple[Cubic, Cubic] = ((1e-5, 0.05, 2.0, 50.0), (1e-5, 0.005, 2.0, 50.0))
-FIRST_WEIGHT = 0.2  # landings that the first deviation counts for ...
-MEAN_WEIGHT = 0.5  # ... and the first mean
-VARIES = 0.5  # a machine may change its gait: by this part of the mean do acceleration and jerk vary at least
-SLOW = 0.1  # m/s below which a foot has rather braked to rest
-MEMORY = 20.0  # landings that are remembered, about
-TAIL = 4.0  # degrees of freedom of how landings scatter
-NEVER = 0.5  # landings of a kind that are taken to have been seen before any was
+FIRST_WEIGHT: Final = 0.2  # landings that the first deviation counts for ...
+MEAN_WEIGHT: Final = 0.5  # ... and the first mean
+VARIES: Final = 0.5  # a machine may change its gait: by this part of the mean do acceleration and jerk vary at least
+SLOW: Final = 0.1  # m/s below which a foot has rather braked to rest
+MEMORY: Final = 20.0  # landings that are remembered, about
+TAIL: Final = 4.0  # degrees of freedom of how landings scatter
+NEVER: Final = 0.5  # landings of a kind that are taken to have been seen before any was
 
-FURTHEST = 0.3  # s ahead beyond which no landing is looked for ...
-MIDDLE = 0.15  # ... and where the search for it begins at most
-STEPS = 4  # Gauss-Newton steps for a sample at most: the next begins where the last has ended
-EXACT = 5e-4  # a step in s that is small enough to be the last one
-FALLS = 3.0  # a point comes down when its rate is so many standard deviations below zero ...
-LEAST_RATE = 0.02  # ... and at least so many m/s
-UNLIKELY = 1e-3  # a kind whose odds are below that ...
-SAMPLES_LEFT_OUT = 3  # ... is not looked at for so many samples
-MEMORY_OF_SWING = 200  # samples of a descent that are remembered
-SHORT = 0.015  # s from the last frame in the air to its landing from which that can be told
+FURTHEST: Final = 0.3  # s ahead beyond which no landing is looked for ...
+MIDDLE: Final = 0.15  # ... and where the search for it begins at most
+STEPS: Final = 4  # Gauss-Newton steps for a sample at most: the next begins where the last has ended
+EXACT: Final = 5e-4  # a step in s that is small enough to be the last one
+FALLS: Final = 3.0  # a point comes down when its rate is so many standard deviations below zero ...
+LEAST_RATE: Final = 0.02  # ... and at least so many m/s
+UNLIKELY: Final = 1e-3  # a kind whose odds are below that ...
+SAMPLES_LEFT_OUT: Final = 3  # ... is not looked at for so many samples
+MEMORY_OF_SWING: Final = 200  # samples of a descent that are remembered
+SHORT: Final = 0.015  # s from the last frame in the air to its landing from which that can be told
 
-BIN = 0.01  # s of lead time that are learnt of together ...
-BINS = 12  # ... and how many there are
-KNOWN = 2.0  # landings that the deviation as it is computed counts for
-CHANCE = 4.0  # variances of a mean error that are taken off it
-HUBER = 1.5  # standard deviations beyond which an error counts no more
-WORST = 25.0  # an error counts no more than so many variances
-BROAD = 0.05  # a told deviation in s from which an error says nothing
+BIN: Final = 0.01  # s of lead time that are learnt of together ...
+BINS: Final = 12  # ... and how many there are
+KNOWN: Final = 2.0  # landings that the deviation as it is computed counts for
+CHANCE: Final = 4.0  # variances of a mean error that are taken off it
+HUBER: Final = 1.5  # standard deviations beyond which an error counts no more
+WORST: Final = 25.0  # an error counts no more than so many variances
+BROAD: Final = 0.05  # a told deviation in s from which an error says nothing
 
 
 class LandingMoments:

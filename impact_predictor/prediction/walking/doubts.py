@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from math import inf, sqrt
+from typing import Final
 
 from ...stamps import NANOSECONDS
 from ..scatter import AVERAGED, DifferenceNoise
@@ -12,10 +13,10 @@ from .cubic import PointFrame
 from .ground import Ground
 
 LONGEST = NANOSECONDS  # ns for which none may stand: runners fly for a part of that
-NEAR = 4.0  # contact tolerances by which the ground that feet show may lie off the scene's
-SURE = 3.0  # standard deviations of a gap that the contact tolerance must be ...
-ROOM = 4.0  # ... and that it had better be
-SHOWN = 20  # footholds from which on a map that tells nothing under them is worth a word
+NEAR: Final = 4.0  # contact tolerances by which the ground that feet show may lie off the scene's
+SURE: Final = 3.0  # standard deviations of a gap that the contact tolerance must be ...
+ROOM: Final = 4.0  # ... and that it had better be
+SHOWN: Final = 20  # footholds from which on a map that tells nothing under them is worth a word
 
 
 class GroundDoubts:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import deque
 from math import hypot, inf, isnan, sqrt
 from operator import attrgetter
+from typing import Final
 
 from ...stamps import NANOSECONDS
 from ..checks import LARGEST, PAUSE, order_of
@@ -39,7 +40,7 @@ from .schedule import LandingSchedule
 from .stance import FootPoint
 from .terrain import TerrainMap
 
-STEP = 0.5  # part of a foot's distance from the base by which the next foothold may lie below all others
+STEP: Final = 0.5  # part of a foot's distance from the base by which the next foothold may lie below all others
 
 
 class FeetContacts(Contacts):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Final
 
 from ...stamps import NANOSECONDS
 from ..checks import LARGEST, followed
@@ -10,7 +11,7 @@ from ..scene import Walking
 from ..types import Status, Vector3, Wrench
 from ..vectors import dot, total
 
-EVERY = 10_000_000  # ns between efforts that are looked at
+EVERY: Final = 10_000_000  # ns between efforts that are looked at
 
 
 class FootForces:

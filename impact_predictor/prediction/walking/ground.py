@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Sequence
 from math import erfc, exp, pi, sqrt
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 from ...stamps import NANOSECONDS
 from ..planar import direction_of
@@ -17,29 +17,29 @@ from .descent import LandingPrior
 from .terrain import TerrainMap
 
 LEAST = GapNoise(gap=1e-5, rate=2e-4)  # by so much a planned course differs from a cubic over few frames: no noise
-GUESS = 0.2  # until feet have stood their gaps are taken to scatter by this part of the contact tolerance ...
-GUESS_RATE = 0.02  # ... and the rates of those by so much, in m/s
-DRIFT = 1.0  # contact tolerances in a second by which standing feet may shift the level: an estimator's drift
-UNSURE = 0.02  # contact tolerances by which that is not known
-MEMORY = 100  # frames of standing feet over which noise is averaged ...
-FEWEST = 10  # ... and from how many on that is believed
-HOVERS = 0.5  # contact tolerances above the lowest foot within which feet stand at first
-LEAVES = 0.1  # contact tolerances by which a foot that has come to rest leaves its foothold
-SINKS = 0.5  # contact tolerances that a foot may sink in
-SOFT = 1.5  # points that soft ground was seen to brake lately, from which on others sink in as they have
-STEADY = 15  # frames over which the level of a foothold is averaged ...
-SETTLES = 100_000_000  # ... while feet and ground may still yield, in ns
-FOLLOWS = 15  # ... and over which the drift is
+GUESS: Final = 0.2  # until feet have stood their gaps are taken to scatter by this part of the contact tolerance ...
+GUESS_RATE: Final = 0.02  # ... and the rates of those by so much, in m/s
+DRIFT: Final = 1.0  # contact tolerances in a second by which standing feet may shift the level: an estimator's drift
+UNSURE: Final = 0.02  # contact tolerances by which that is not known
+MEMORY: Final = 100  # frames of standing feet over which noise is averaged ...
+FEWEST: Final = 10  # ... and from how many on that is believed
+HOVERS: Final = 0.5  # contact tolerances above the lowest foot within which feet stand at first
+LEAVES: Final = 0.1  # contact tolerances by which a foot that has come to rest leaves its foothold
+SINKS: Final = 0.5  # contact tolerances that a foot may sink in
+SOFT: Final = 1.5  # points that soft ground was seen to brake lately, from which on others sink in as they have
+STEADY: Final = 15  # frames over which the level of a foothold is averaged ...
+SETTLES: Final = 100_000_000  # ... while feet and ground may still yield, in ns
+FOLLOWS: Final = 15  # ... and over which the drift is
 
-FOOTHOLDS = 24  # that are remembered: a hind foot steps where a front foot stood some steps before
-PLANE = 12  # of them, the last ones, that tell the plane about which levels scatter ...
-RECENT = 0.8  # ... each with that part of the weight of the next one
-SLOPE = 0.1  # standard deviation of the plane's slopes before footholds show them
-FORGETS = 0.9  # part of what earlier footholds told of the scatter that counts beside one more
-NEIGHBOUR = 0.1  # m: the ground is as high here as at a foothold that is much nearer than that
-FAR = 5.0  # squares of that distance, or standard deviations, beyond which nothing is told
-ROUGH = 0.2  # contact tolerances by which levels are taken to scatter until footholds show it ...
-GUESSED = 0.3  # ... and how much that counts beside one
+FOOTHOLDS: Final = 24  # that are remembered: a hind foot steps where a front foot stood some steps before
+PLANE: Final = 12  # of them, the last ones, that tell the plane about which levels scatter ...
+RECENT: Final = 0.8  # ... each with that part of the weight of the next one
+SLOPE: Final = 0.1  # standard deviation of the plane's slopes before footholds show them
+FORGETS: Final = 0.9  # part of what earlier footholds told of the scatter that counts beside one more
+NEIGHBOUR: Final = 0.1  # m: the ground is as high here as at a foothold that is much nearer than that
+FAR: Final = 5.0  # squares of that distance, or standard deviations, beyond which nothing is told
+ROUGH: Final = 0.2  # contact tolerances by which levels are taken to scatter until footholds show it ...
+GUESSED: Final = 0.3  # ... and how much that counts beside one
 
 
 class GroundLevel(NamedTuple):

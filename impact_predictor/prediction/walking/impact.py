@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from math import hypot, sqrt
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 from ...mechanics.impact.answer import is_slow
 from ...mechanics.impact.spatial import ContactPoints
@@ -26,14 +26,14 @@ from ..types import Bound, Leftover, PointOutcome, Sample, SpatialTwist, Status,
 from ..vectors import add, axes_of, cross, dot, mean, times, to_body, to_world
 from .mechanism import NOTHING, LeggedMachine
 
-USABLE = 0.2
+USABLE: Final = 0.2
 """The machine turns about the line of its standing points where the landing one is further from it than this part of
 their distance: else that line says nothing of where the machine goes."""
 
-LIFTS = 1e-3
+LIFTS: Final = 1e-3
 """Contacts lift together when they do so faster than this part of the fastest one before: steps of the law err so."""
 
-COLLINEAR = 0.05
+COLLINEAR: Final = 0.05
 """Standing points no further from a line than this part of its length stand on it."""
 
 

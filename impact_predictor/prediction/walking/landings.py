@@ -9,7 +9,7 @@ from collections import deque
 from collections.abc import Iterable, Sequence
 from math import hypot, inf
 from operator import itemgetter
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 from ...stamps import NANOSECONDS
 from ..planar import hardly, posture_of
@@ -27,8 +27,10 @@ from .schedule import LandingSchedule
 from .stance import FootPoint
 from .trajectory import FootTrajectory
 
-LEAVING = 0.2  # a point that stands leaves the ground when it rises with this part of a speed that is hardly one ...
-RISES = 3.0  # ... and with so many standard deviations of the noise
+LEAVING: Final = (
+    0.2  # a point that stands leaves the ground when it rises with this part of a speed that is hardly one ...
+)
+RISES: Final = 3.0  # ... and with so many standard deviations of the noise
 
 
 class FootCollision(NamedTuple):

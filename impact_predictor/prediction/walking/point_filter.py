@@ -7,18 +7,19 @@ higher: a foot that is driven to the ground is nearly a cubic of time, though ne
 from __future__ import annotations
 
 from math import sqrt
+from typing import Final
 
 from ...stamps import NANOSECONDS
 from ..types import Vector3
 from .cubic import Cubic, GapNoise, PointFrame, Triangle
 
 FIRST = (1.0, 1e4, 1e8)  # variances of speed, acceleration and jerk (SI) of a point of which one frame is known
-SNAP = 1e5  # power density in (m/s^3)^2/s of how the jerk of a foot changes, until its motion shows it ...
+SNAP: Final = 1e5  # power density in (m/s^3)^2/s of how the jerk of a foot changes, until its motion shows it ...
 LEAST_SNAP, MOST_SNAP = 1e3, 3e8
-TURN = 2.5e5  # variance of how the jerk changes at the highest place
-ADAPTS = 0.08  # ... by this part with each measurement
-OUTLIER = 3.0  # a point moves otherwise than before when a measurement is off by so many standard deviations
-LASTS = 2520.0  # a cubic is followed until it is off by the root of a tenth of so many variances of a gap
+TURN: Final = 2.5e5  # variance of how the jerk changes at the highest place
+ADAPTS: Final = 0.08  # ... by this part with each measurement
+OUTLIER: Final = 3.0  # a point moves otherwise than before when a measurement is off by so many standard deviations
+LASTS: Final = 2520.0  # a cubic is followed until it is off by the root of a tenth of so many variances of a gap
 
 
 class PointFilter:

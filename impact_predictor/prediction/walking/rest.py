@@ -5,23 +5,24 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Sequence
 from math import inf, sqrt
+from typing import Final
 
 from ...stamps import NANOSECONDS
 from ..types import Sample
 from ..vectors import add, axes_of, cross, dot, mean, to_world, total
 from .cubic import SCALE, CubicSums, GapNoise, PointFrame, slope_of, square_of, value_of
 
-SURE = 3.0  # standard deviations of its mean rate within which a point rests
+SURE: Final = 3.0  # standard deviations of its mean rate within which a point rests
 WINDOWS = (1, 2, 4)  # contact times over which it is looked at: the more of them, the less noise hides
-COURSE = 6  # contact times of the descent before that, from which its course is told
-FEWEST = 5  # frames of that course at least
-JERK = 1000.0  # standard deviation in m/s^3 of how the acceleration of a foot changes
-FELL = 5.0  # standard deviations by which it would have come further down, had it gone on as before ...
-BRAKES = 4.0  # ... and as many times faster at least than gravity makes it in a contact time: drives brake less
-YIELDS = 0.15  # part of the speed of a foot that strikes with which it may bounce
-SETTLES = 2  # dead times for which a foot rests that has come down otherwise than by a strike
-LASTS = 0.9  # part of that which the frames span at least
-STILL = 0.2  # part of the way, at the speed that gravity gives in a contact time, within which it rests
+COURSE: Final = 6  # contact times of the descent before that, from which its course is told
+FEWEST: Final = 5  # frames of that course at least
+JERK: Final = 1000.0  # standard deviation in m/s^3 of how the acceleration of a foot changes
+FELL: Final = 5.0  # standard deviations by which it would have come further down, had it gone on as before ...
+BRAKES: Final = 4.0  # ... and as many times faster at least than gravity makes it in a contact time: drives brake less
+YIELDS: Final = 0.15  # part of the speed of a foot that strikes with which it may bounce
+SETTLES: Final = 2  # dead times for which a foot rests that has come down otherwise than by a strike
+LASTS: Final = 0.9  # part of that which the frames span at least
+STILL: Final = 0.2  # part of the way, at the speed that gravity gives in a contact time, within which it rests
 
 
 def rate_of(frames: Sequence[PointFrame], noise: GapNoise) -> tuple[float, float]:

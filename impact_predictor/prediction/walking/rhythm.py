@@ -7,22 +7,23 @@ from collections.abc import Iterable
 from itertools import pairwise
 from math import exp, hypot
 from statistics import median
+from typing import Final
 
 from ...stamps import NANOSECONDS
 
-STRIDES = 5  # the last ones that tell the rhythm ...
-FEWEST = 4  # ... and how many of them it takes
-LEAST = 1e-3  # s by which a rhythm is off at least ...
-SURE = 6e-3  # ... and at most, to count at all: on uneven ground no stride is like another
-UNLIKE = 3.0  # standard deviations by which what is measured speaks against the rhythm
+STRIDES: Final = 5  # the last ones that tell the rhythm ...
+FEWEST: Final = 4  # ... and how many of them it takes
+LEAST: Final = 1e-3  # s by which a rhythm is off at least ...
+SURE: Final = 6e-3  # ... and at most, to count at all: on uneven ground no stride is like another
+UNLIKE: Final = 3.0  # standard deviations by which what is measured speaks against the rhythm
 
-UNSEEN = 7e-4  # s by which a landing comes before a sample shows it: a contact sinks in, and samples are rare
-BIN = 0.01  # s of lead time that are learnt of together ...
-BINS = 12  # ... and how many there are
+UNSEEN: Final = 7e-4  # s by which a landing comes before a sample shows it: a contact sinks in, and samples are rare
+BIN: Final = 0.01  # s of lead time that are learnt of together ...
+BINS: Final = 12  # ... and how many there are
 BEYOND, PART = 1.44, 0.15  # this part of normal deviates lies so many standard deviations off, or further
-STEP = 5.0  # change of the logarithm of the scale where all are further off, over the landings learnt of ...
-KNOWN = 2.0  # ... with those that the deviation as it is computed counts for ...
-MEMORY = 10.0  # ... and that are remembered
+STEP: Final = 5.0  # change of the logarithm of the scale where all are further off, over the landings learnt of ...
+KNOWN: Final = 2.0  # ... with those that the deviation as it is computed counts for ...
+MEMORY: Final = 10.0  # ... and that are remembered
 
 
 class StrideRhythm:

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import pairwise
+from typing import Final
 
 from ...stamps import NANOSECONDS
 from ..types import Schedule, Status
 
-PLANNED = 10_000_000_000  # ns for which what was planned is remembered
-FURTHEST = 1_000_000_000  # ns from a planned landing beyond which a landing is another one, which nobody planned
-UNPLANNED = 5  # landings in a row after which the plan itself is in doubt
+PLANNED: Final = 10_000_000_000  # ns for which what was planned is remembered
+FURTHEST: Final = 1_000_000_000  # ns from a planned landing beyond which a landing is another one, which nobody planned
+UNPLANNED: Final = 5  # landings in a row after which the plan itself is in doubt
 
 
 class LandingSchedule:

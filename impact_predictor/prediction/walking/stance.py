@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import deque
 from math import sqrt
+from typing import Final
 
 from ...stamps import NANOSECONDS
 from ..planar import hardly
@@ -16,10 +17,10 @@ from .ground import Foothold, Ground, GroundLevel
 from .rest import falls, hovers, is_slow, rate_of, settles, since, stop_of
 from .trajectory import NEAREST, Arrival, ArrivalFit, FootTrajectory
 
-FAR = 3.0  # a point was off the ground when its gap was so many standard deviations above it
-FELL = 5.0  # times as far as it may seem to move at rest a point has come down before it rests
-SURE = 3.0  # standard deviations of its mean rate within which a point rests ...
-BOUNCE = 0.1  # ... and m/s by which it may still bounce where it has struck
+FAR: Final = 3.0  # a point was off the ground when its gap was so many standard deviations above it
+FELL: Final = 5.0  # times as far as it may seem to move at rest a point has come down before it rests
+SURE: Final = 3.0  # standard deviations of its mean rate within which a point rests ...
+BOUNCE: Final = 0.1  # ... and m/s by which it may still bounce where it has struck
 SETTLED = (
     3  # a frame shows the ground when the point is still near it, and has not begun to lift, so many dead times later
 )

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from math import floor, isnan, nan
+from typing import Final
 
 import numpy as np
 
 from ..checks import LARGEST
 from ..types import Status, Terrain, Vector3
 
-STEEP = 0.5  # slope beyond which the ground has an edge between two cells
-EDGE = 0.25  # part of what the heights about a place differ by that the one between them may be off
-FURTHEST = 1000  # cells from the middle of a map within which it tells heights
+STEEP: Final = 0.5  # slope beyond which the ground has an edge between two cells
+EDGE: Final = 0.25  # part of what the heights about a place differ by that the one between them may be off
+FURTHEST: Final = 1000  # cells from the middle of a map within which it tells heights
 
 
 class TerrainMap:

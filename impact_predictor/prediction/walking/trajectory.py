@@ -6,7 +6,7 @@ from collections import deque
 from collections.abc import Sequence
 from itertools import islice
 from math import inf
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 from ...stamps import NANOSECONDS
 from ..types import Vector3
@@ -18,24 +18,26 @@ from .rest import rate_of
 if TYPE_CHECKING:
     from .ground import GroundLevel
 
-FEWEST = 5  # frames that a cubic is fitted to at least: four would leave nothing to tell how well it fits
-MOST = 200  # frames that are kept: half a second at 400 Hz
+FEWEST: Final = 5  # frames that a cubic is fitted to at least: four would leave nothing to tell how well it fits
+MOST: Final = 200  # frames that are kept: half a second at 400 Hz
 
-LEAST_SPAN = 0.03  # s over which one cubic is taken to follow a descent
-LEAST = 6  # frames in the air in which an arrival is looked for; they may be from before the foot began to descend
-NEAREST = 42  # the most of them that are looked at, besides those that may have been on the ground already
-FULL = 150  # frames after which a point that hovers near the ground is looked at anew
-SHARE = 4  # frames that are caught up with while the next one comes in
-YIELDS = 1.2  # contact tolerances that soft contacts may yield further than they stay
-KNOWN = 0.2  # contact tolerances of standard deviation below which a level is known
-CLEAR = 3.0  # standard deviations of the noise of a gap from which on a frame shows that it has sunk in
-BENDS = 100.0  # m/s^2 by which a foot may be accelerated as it arrives
-SINKS_FOR = 0.005  # s for which a foot sinks in at most, ...
-LEAST_SPEED = 0.1  # ... and m/s with which at least
-COURSE = 10_000_000  # ns before an arrival over which the speed is taken
-MET = 0.2  # part of the way between two frames by which the height is unsure at which a point has met the ground
-UNSEEN = 250_000_000  # ns without a frame after which a point follows another motion than before
-SAME = 0.01  # a later arrival is believed where it leaves less by this part of the noise's square
+LEAST_SPAN: Final = 0.03  # s over which one cubic is taken to follow a descent
+LEAST: Final = (
+    6  # frames in the air in which an arrival is looked for; they may be from before the foot began to descend
+)
+NEAREST: Final = 42  # the most of them that are looked at, besides those that may have been on the ground already
+FULL: Final = 150  # frames after which a point that hovers near the ground is looked at anew
+SHARE: Final = 4  # frames that are caught up with while the next one comes in
+YIELDS: Final = 1.2  # contact tolerances that soft contacts may yield further than they stay
+KNOWN: Final = 0.2  # contact tolerances of standard deviation below which a level is known
+CLEAR: Final = 3.0  # standard deviations of the noise of a gap from which on a frame shows that it has sunk in
+BENDS: Final = 100.0  # m/s^2 by which a foot may be accelerated as it arrives
+SINKS_FOR: Final = 0.005  # s for which a foot sinks in at most, ...
+LEAST_SPEED: Final = 0.1  # ... and m/s with which at least
+COURSE: Final = 10_000_000  # ns before an arrival over which the speed is taken
+MET: Final = 0.2  # part of the way between two frames by which the height is unsure at which a point has met the ground
+UNSEEN: Final = 250_000_000  # ns without a frame after which a point follows another motion than before
+SAME: Final = 0.01  # a later arrival is believed where it leaves less by this part of the noise's square
 
 
 class FootTrajectory:
