@@ -25,7 +25,7 @@ _COMPILED = {
         "engine equations events falling felt integrate phases pivot reactions slip spatial_problem stances"
     ),
     "prediction": "checks cylinder impact motion_recorder planar points predictor recorded scatter spatial vectors",
-    "prediction.deck": "frame motion tracker window",
+    "prediction.deck": "frame motion window",
     "prediction.walking": (
         "announcement braking clock cubic descent doubts feet forces ground impact landings point_filter rest rhythm "
         "schedule stance terrain trajectory"

@@ -157,6 +157,12 @@ def odd_in(node: ast.AST) -> str | None:
             return "a compiled object has no __dict__ to keep it in"
         case ast.Lambda() | ast.FunctionDef(body=[*_, ast.FunctionDef(), _]):
             return "a function in a function leaves a cycle to the collector at each call"
+        case ast.AnnAssign(annotation=said, value=(ast.Tuple() | ast.BinOp(left=ast.Tuple())) as value) if (
+            "Final" in ast.unparse(said)
+            and "..." not in ast.unparse(said)
+            and any(isinstance(one, ast.Constant) and isinstance(one.value, float) for one in ast.walk(value))
+        ):
+            return "a Final tuple of floats and of a known length counts as not set"
         case ast.FunctionDef() if taken_for_none(node):
             return "what was set to None counts as None in the rest of the function, whatever a method makes of it"
     return None
@@ -192,6 +198,7 @@ def test_nothing_is_compiled_that_would_mean_something_else(name: str) -> None:
         "vars(it).update(more)",
         "class A:\n    @cached_property\n    def b(self): ...",
         "sorted(pairs, key=lambda pair: pair[1])",
+        "NOWHERE: Final[Place] = (0.0, 0.0)",
         "def of(self):\n    def inner(): ...\n    return inner",
         "def of(self):\n    self.x = None\n    self.find()\n    return self.x",
     ],

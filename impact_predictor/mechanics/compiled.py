@@ -10,8 +10,6 @@ from inspect import getmembers, getsource, isfunction, signature
 from types import ModuleType
 from typing import TYPE_CHECKING, Any, TypeVar, cast
 
-import numpy as np
-
 from ..native import as_python, is_compiled
 
 if TYPE_CHECKING:
@@ -85,7 +83,7 @@ def without_numba(make: Callable[[str, Any], Callable[..., Any]], law: ModuleTyp
         if work_at >= 0:
             room = len(given[work_at])
             if room not in work:
-                work[room] = flat(np.zeros(room))
+                work[room] = flat(given[work_at])
             taken[work_at] = work[room]
         result = function(*taken)
         for i, (array, values) in enumerate(zip(given, taken, strict=True)):

@@ -50,7 +50,7 @@ BodyAnswer = tuple[int, tuple[float, float, float], float, float, float, float, 
 """Mode; twist after; N_A, T_A, N_B, T_B in N s; the contact states as a law codes them; the bits of `Flag`; energy
 lost; whether the law allows no other answer; the law that answered."""
 
-NOTHING: Final[Impact] = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0, 0, 0)
+NOTHING: Impact = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0, 0, 0)
 
 
 def follow(problem: Problem, law: int, choice: int) -> Impact:

@@ -86,7 +86,7 @@ ContactView = tuple[bool, float, float, float, float, float, float, float]
 """Whether every number of a contact is in its range; its normal and tangential velocity, and the speed below which
 either is rounding; its normal; moments of its normal and its tangent about the mass centre."""
 
-NOT_VALID: Final[ContactView] = (False, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+NOT_VALID: ContactView = (False, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
 def planar_contacts(
@@ -226,7 +226,7 @@ def problem_of(
 FARTHEST: Final = 1e100
 """Radii of gyration beyond which no body has contacts: products of such levers overflow."""
 
-NO_PROBLEM: Final[Problem] = (
+NO_PROBLEM: Problem = (
     planar_contacts(1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
     (0.0, 0.0),
     (inf, 0.0, 0.0, 0.0),

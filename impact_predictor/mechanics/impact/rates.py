@@ -5,8 +5,6 @@ Law code (see `contacts`).
 
 from __future__ import annotations
 
-from typing import Final
-
 from .contacts import CANCELLED, MINUS, OPEN, PLUS, ROUNDING, STICK, ContactRows, below_rounding, push_interval
 
 Rates = tuple[bool, float, float, float, float, float, float, float, float, float, float]
@@ -16,7 +14,7 @@ omega): all per unit N_B."""
 States = tuple[int, int, int, Rates]
 """How many pairs of states are consistent; the chosen states of A and B; their rates."""
 
-NOT_CONSISTENT: Final[Rates] = (False, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+NOT_CONSISTENT: Rates = (False, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
 def state_alone(contacts: ContactRows, ctb: float) -> int:

@@ -46,7 +46,7 @@ Solution = tuple[bool, int, int, float, float, float, float, float, float, float
 Solutions = tuple[int, Solution, Solution]
 """How many different solutions are found; the first of them; the one that is asked for."""
 
-NOT_POSSIBLE: Final[Solution] = (False, OPEN, OPEN, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+NOT_POSSIBLE: Solution = (False, OPEN, OPEN, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
 def new_alone(contacts: ContactRows, gna: float, gnb: float, ctb: float) -> Solution:

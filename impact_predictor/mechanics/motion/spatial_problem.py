@@ -26,7 +26,7 @@ INPUT: Final = 32
 """Numbers of a problem before those of its points: horizon, state, inertia over mass, pull; friction and points."""
 OUTPUT: Final = 14
 """Numbers of an answer before those of its points: time and state; gap and rate of each."""
-WORK: Final = 162, 38, 9
+WORK = 162, 38, 9
 """Numbers to work with: some, some for each point, and some for each pair of points."""
 INVALID: Final = -2
 
