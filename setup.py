@@ -110,7 +110,7 @@ ALL = ("plot", "page", "calibrate", "fast", "fleet", "articulated", "robot")
 
 setup(
     name=NAME,
-    version="0.1.0",
+    version="1.0.0",
     description="Predicts the next touchdown of a rigid body: when, in which contact mode, with which velocities",
     maintainer="impact_predictor maintainers",
     maintainer_email="maintainers@users.noreply.github.com",

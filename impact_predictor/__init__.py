@@ -66,7 +66,7 @@ __all__ = [
     "solve_spatial_impacts",
     "standing",
 ]
-__version__ = "0.1.0"
+__version__ = "1.0.0"
 
 
 LATER = {
