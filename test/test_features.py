@@ -82,7 +82,9 @@ if in_node:
 
 class Imported:
     def __init__(self):
-        self.modules = {name: sys.modules.pop(name) for name in [*sys.modules] if name.partition(".")[0] in heavy}
+        # But for what numba pickles with: it is asked for by its name in what it pickles.
+        taken = [one for one in sys.modules if one.partition(".")[0] in heavy and "cloudpickle" not in one]
+        self.modules = {name: sys.modules.pop(name) for name in taken}
 
     def find_spec(self, name, path, target=None):
         return ModuleSpec(name, self) if name in self.modules else None
