@@ -97,6 +97,7 @@ def library() -> ModuleType | str:
     assert spec is not None
     assert spec.loader is not None
     try:
+        import_module("librt.vecs")  # without its vectors some of the modules could not be loaded, later
         loaded = module_from_spec(spec)
         spec.loader.exec_module(loaded)
     except (ImportError, OSError) as error:

@@ -54,6 +54,14 @@ def test_what_was_compiled_of_other_sources_never_runs(tmp_path: Path) -> None:
     assert said == "as Python: what was compiled is of other sources: `make compiled` compiles these"
 
 
+@pytest.mark.skipif(isinstance(native.library(), str), reason="needs the library: `make compiled`")
+def test_the_files_run_as_python_where_the_vectors_of_machine_code_are_not_installed() -> None:
+    code = "import sys; sys.modules['librt'] = None; from impact_predictor.native import form; print(form())"
+    [said] = run(code)
+    assert said.startswith("as Python: what was compiled cannot be loaded: ")
+    assert "librt" in said
+
+
 def one_of(part: Any, i: int) -> Any:
     """One of many problems, whose fields are arrays."""
     if isinstance(part, tuple):
