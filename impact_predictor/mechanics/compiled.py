@@ -1,4 +1,4 @@
-"""Law code compiled by numba where it is installed: the same functions, and the same answers to the last bit."""
+"""Law code by numba where it is installed, else as machine code or as Python: the same answers to the last bit."""
 
 from __future__ import annotations
 
@@ -55,16 +55,17 @@ def compiled(
 def door(
     make: Callable[[str, Any], Callable[..., Any]],
     law: ModuleType,
-    used: Sequence[str] = (),
-    inlined: Collection[str] = (),
+    used: Sequence[ModuleType] = (),
+    inlined: Collection[Callable[..., object]] = (),
 ) -> Callable[..., Any]:
     """The function that `make` makes of a module of law code, compiled if that can be.
 
-    It calls functions of the modules with the names `used`, too; the functions of the names `inlined` become a part of
-    their callers. Without numba it is machine code, or runs as Python.
+    It calls functions of the modules `used`, too; the functions `inlined` become a part of their callers. Without numba
+    it is machine code, or runs as Python.
     """
-    modules = [as_python(name.partition(".")[2]) for name in (*used, law.__name__)]
-    function = compiled(make, modules, lambda part: getattr(part, "__name__", "") in inlined, modules[-1])
+    modules = [as_python(module.__name__.partition(".")[2]) for module in (*used, law)]
+    names = {function.__name__ for function in inlined}
+    function = compiled(make, modules, lambda part: getattr(part, "__name__", "") in names, modules[-1])
     return without_numba(make, law) if function is None else function
 
 
@@ -76,19 +77,19 @@ def without_numba(make: Callable[[str, Any], Callable[..., Any]], law: ModuleTyp
     """
     function, flat = make("", law), vectors if is_compiled(law.__name__) else lists
     names = list(signature(function).parameters)
-    work_at, work = names.index("work") if "work" in names else -1, {}
+    scratch: dict[int, Any] = {}  # of each size
 
     def called(*given: Any) -> Any:
-        taken = [as_flat(one, flat) if i != work_at else one for i, one in enumerate(given)]
-        if work_at >= 0:
-            room = len(given[work_at])
-            if room not in work:
-                work[room] = flat(given[work_at])
-            taken[work_at] = work[room]
+        taken = []
+        for name, one in zip(names, given, strict=True):
+            if name == "work":
+                taken.append(scratch[len(one)] if len(one) in scratch else scratch.setdefault(len(one), flat(one)))
+            else:
+                taken.append(flat(one) if hasattr(one, "tolist") else one)
         result = function(*taken)
-        for i, (array, values) in enumerate(zip(given, taken, strict=True)):
-            if i != work_at:
-                fill(array, values)
+        for name, one, values in zip(names, given, taken, strict=True):
+            if name != "work" and hasattr(one, "tolist"):
+                one[...] = values
         return result
 
     return called
@@ -113,20 +114,6 @@ def vector_types() -> tuple[Callable[[list[float]], Any], Callable[[list[int]], 
     from mypy_extensions import i64
 
     return vec[float], vec[i64]
-
-
-def as_flat(given: Any, flat: Callable[[Any], Any]) -> Any:
-    if isinstance(given, tuple):
-        return tuple([as_flat(one, flat) for one in given])
-    return flat(given) if hasattr(given, "tolist") else given
-
-
-def fill(given: Any, values: Any) -> None:
-    if isinstance(given, tuple):
-        for array, part in zip(given, values, strict=True):
-            fill(array, part)
-    elif hasattr(given, "tolist"):
-        given[...] = values
 
 
 @contextmanager

@@ -121,7 +121,7 @@ class Draws:
 @cache
 def teller() -> Callable[..., None]:
     """The law code that reads the answers of draws, compiled, where it can be, and loaded."""
-    tell = door(make_teller, drawn, inlined=("over",))
+    tell = door(make_teller, drawn, inlined=(drawn.over,))
     tell(
         1,
         0,

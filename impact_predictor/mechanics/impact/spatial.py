@@ -367,8 +367,8 @@ def solvers() -> Solvers:
     return Solvers(door(make_bodies, spatial_body, USED, INLINED), door(make_mechanism, spatial_body, USED, INLINED))
 
 
-USED = (spatial_path.__name__,)
-INLINED = ("velocities", "push")
+USED = (spatial_path,)
+INLINED = (spatial_path.velocities, spatial_path.push)
 
 
 def make_bodies(law_code: str, law: Any) -> Callable[..., None]:

@@ -115,9 +115,9 @@ def state_of(numbers: Sequence[float]) -> SpatialState:
     return SpatialState((px, py, pz), (qx, qy, qz, qw), (vx, vy, vz), (wx, wy, wz))
 
 
-USED = (reactions.__name__, stances.__name__, falling.__name__)
+USED = (reactions, stances, falling)
 
-INLINED = ("derive", "fill", "locate", "measure", "crossing", "margins")
+INLINED = (reactions.derive, reactions.fill, reactions.locate, falling.measure, falling.crossing, stances.margins)
 """Law functions that become a part of those that call them: calls with so many sequences take a third of the time."""
 
 
