@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from math import sqrt
-from typing import Final, NamedTuple
+from typing import Final
 
 from ...stamps import NANOSECONDS
 from ..types import Vector3
@@ -23,36 +23,31 @@ Triangle = tuple[float, float, float, float, float, float, float, float, float, 
 its diagonal in the place of that."""
 
 
-class GapNoise(NamedTuple):
-    """Standard deviations of a gap (m) and of its rate (m/s)."""
+class GapNoise:
+    """Standard deviations of a gap (m) and of its rate (m/s).
 
-    gap: float
-    rate: float
+    `ratio` is what the square of a rate in units of the scale counts beside that of a gap, by how much surer it is.
+    """
 
-    @property
-    def ratio(self) -> float:
-        """What the square of a rate in units of the scale counts beside that of a gap, by how much surer it is."""
-        return (self.gap / (self.rate * SCALE)) ** 2
+    def __init__(self, gap: float, rate: float) -> None:
+        self.gap, self.rate = gap, rate
+        self.ratio = (gap / (rate * SCALE)) ** 2
 
 
-class PointFrame(NamedTuple):
+class PointFrame:
     """A point at one instant: its gap, the rate of that, position and velocity; SI units, in the frame of odom.
 
     Where no velocity is measured both are None.
     """
 
-    stamp: int
-    gap: float
-    rate: float | None
-    position: Vector3
-    velocity: Vector3 | None
+    def __init__(self, stamp: int, gap: float, rate: float | None, position: Vector3, velocity: Vector3 | None) -> None:
+        self.stamp, self.gap, self.rate, self.position, self.velocity = stamp, gap, rate, position, velocity
 
 
 class CubicSums:
     """Sums over values at stamps that follow each other, from which the cubic nearest to them is found.
 
-    Times are counted from the first stamp in units of `SCALE`, values from the first one; of a `PointFrame` the first
-    three fields are what is taken: stamp in ns, gap and rate.
+    Times are counted from the first stamp (ns) in units of `SCALE`, values from the first one.
     """
 
     def __init__(self, stamp: int, value: float, rate: float | None) -> None:

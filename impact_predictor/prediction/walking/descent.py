@@ -82,17 +82,16 @@ class LandingMoments:
         self.variance = h, v, max(a, (VARIES * mean[2]) ** 2), max(j, (VARIES * mean[3]) ** 2)
 
 
-class LandingFit(NamedTuple):
+class LandingFit:
     """The landing of one kind that fits best: `time` s ahead, its `variance`, the logarithm of its `evidence`, the
     squares in variances that are `left`, the `state` of the gap then, and the `factor` of its covariance.
     """
 
-    time: float
-    variance: float
-    evidence: float
-    left: float
-    state: Cubic
-    factor: Triangle
+    def __init__(
+        self, time: float, variance: float, evidence: float, left: float, state: Cubic, factor: Triangle
+    ) -> None:
+        self.time, self.variance, self.evidence, self.left = time, variance, evidence, left
+        self.state, self.factor = state, factor
 
 
 class LandingPrior:
@@ -183,8 +182,9 @@ def solution_of(
     if tried is None or time >= FURTHEST:
         return None
     # What fits badly, or has not been found yet, is less sure than it seems.
-    _, variance, evidence, left, state, factor = tried[0]
-    return LandingFit(time, variance * max(1.0, 0.25 * left) + moved * moved, evidence, left, state, factor)
+    one = tried[0]
+    variance = one.variance * max(1.0, 0.25 * one.left) + moved * moved
+    return LandingFit(time, variance, one.evidence, one.left, one.state, one.factor)
 
 
 class LeadTimeErrors:

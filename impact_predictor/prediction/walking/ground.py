@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Sequence
 from math import erfc, exp, pi, sqrt
-from typing import Final, NamedTuple
+from typing import Final
 
 from ...stamps import NANOSECONDS
 from ..planar import direction_of
@@ -42,11 +42,11 @@ ROUGH: Final = 0.2  # contact tolerances by which levels are taken to scatter un
 GUESSED: Final = 0.3  # ... and how much that counts beside one
 
 
-class GroundLevel(NamedTuple):
+class GroundLevel:
     """Where the ground is under a place: its `height` in m over the scene's plane, with its standard `deviation`."""
 
-    height: float
-    deviation: float
+    def __init__(self, height: float, deviation: float) -> None:
+        self.height, self.deviation = height, deviation
 
     def below(self, gap: float, deviation: float) -> GroundLevel:
         """The level under a point that has come down to a gap with a standard deviation (m), and has met no ground.
@@ -205,11 +205,11 @@ class Ground:
         u, v = dot(self._u, place), dot(self._v, place)
         told = self._told(place)
         if told is None:
-            height, deviation = self._relief.at(u, v)
-            return GroundLevel(self.drift + height, deviation)
+            level = self._relief.at(u, v)
+            return GroundLevel(self.drift + level.height, level.deviation)
         datum, edge = told
-        height, deviation = self._residual.at(u, v)
-        return GroundLevel(self.drift + datum + height, sqrt(deviation * deviation + edge * edge))
+        level = self._residual.at(u, v)
+        return GroundLevel(self.drift + datum + level.height, sqrt(level.deviation * level.deviation + edge * edge))
 
     def level_of(self, foothold: Foothold) -> GroundLevel:
         """The level of a foothold now."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from math import hypot, sqrt
-from typing import Final, NamedTuple
+from typing import Final
 
 from ...mechanics.impact.answer import is_slow
 from ...mechanics.impact.spatial import ContactPoints
@@ -37,13 +37,13 @@ COLLINEAR: Final = 0.05
 """Standing points no further from a line than this part of its length stand on it."""
 
 
-class LandingPoint(NamedTuple):
+class LandingPoint:
     """A point that lands: its `velocity` (m/s) relative to the support, along the axes of the frame that the pose is
     in, and how many s it lands after the first one.
     """
 
-    velocity: Vector3
-    delay: float = 0.0
+    def __init__(self, velocity: Vector3, delay: float = 0.0) -> None:
+        self.velocity, self.delay = velocity, delay
 
 
 AT_REST = LandingPoint(ORIGIN)
@@ -76,14 +76,14 @@ def touchdown_of(
     axes = axes_of(base.orientation)
     moves, arms, gaps, fastest, strikes = {}, [], [], 0.0, False
     for i in those:
-        velocity, delay = landing.get(i, AT_REST)
-        rate = dot(normal, velocity)
+        struck = landing.get(i, AT_REST)
+        velocity, rate = struck.velocity, dot(normal, struck.velocity)
         # What only grazes the support, or leaves it, rests.
         approach = rate if rate < -GRAZES else 0.0
         velocity = add(velocity, normal, approach - rate)
         moves[i] = velocity
         arms.append(add(places[i], base.position, -1.0))
-        gaps.append(-approach * delay)
+        gaps.append(-approach * struck.delay)
         fastest, strikes = max(fastest, dot(velocity, velocity)), strikes or approach < 0.0
     met = ContactPoints(
         positions=arms,
@@ -109,15 +109,15 @@ def touchdown_of(
     )
     same_foot = [i for i in stood if i // walking.points == new[0] // walking.points]
     old = tuple([i for i in landing if i not in new] or same_foot or stood)
-    others, struck = ([contact for contact in contacts if contact.point in group] for group in (old, new))
+    others, own = ([contact for contact in contacts if contact.point in group] for group in (old, new))
     striking, middle = mean([moves[i] for i in new]), mean([places[i] for i in new])
     feet, delays, masses = [places[i] for i in old], [landing[i].delay for i in new], add(base.position, center)
     ahead = ahead_of(scene, feet, middle, striking, masses)
     axis = cross(normal, ahead)
-    impulses = along_plane(others, ahead, normal), along_plane(struck, ahead, normal)
+    impulses = along_plane(others, ahead, normal), along_plane(own, ahead, normal)
     # An estimate goes on for the contact time: what rises no faster than gravity takes back in it does not lift.
     least = hardly(scene) if found.bound is Bound.ESTIMATE else LIFTS * sqrt(fastest)
-    mode = mode_of_contacts(others, struck, normal, least) if strikes else Mode.NO_IMPACT
+    mode = mode_of_contacts(others, own, normal, least) if strikes else Mode.NO_IMPACT
     flags = found.flags
     if strikes and is_slow(impulses[1][0] / scene.mass, scene.validity):
         flags |= Flag.SLOW_IMPACT

@@ -9,7 +9,7 @@ from collections import deque
 from collections.abc import Iterable, Sequence
 from math import hypot, inf
 from operator import itemgetter
-from typing import Final, NamedTuple
+from typing import Final
 
 from ...stamps import NANOSECONDS
 from ..planar import hardly, posture_of
@@ -33,7 +33,7 @@ LEAVING: Final = (
 RISES: Final = 3.0  # ... and with so many standard deviations of the noise
 
 
-class FootCollision(NamedTuple):
+class FootCollision:
     """What the impact of a landing is computed from, when somebody wants it.
 
     The base of a `sample` goes on along a `line` for `time` s; points are then at `places` (m, in the world). The `old`
@@ -41,14 +41,19 @@ class FootCollision(NamedTuple):
     with it. `lead_time` in s is that of the foot itself.
     """
 
-    sample: Sample
-    line: TwistLine | None
-    time: float
-    lead_time: float
-    places: Sequence[Vector3]
-    old: tuple[int, ...]
-    new: tuple[int, ...]
-    landing: dict[int, LandingPoint]
+    def __init__(
+        self,
+        sample: Sample,
+        line: TwistLine | None,
+        time: float,
+        lead_time: float,
+        places: Sequence[Vector3],
+        old: tuple[int, ...],
+        new: tuple[int, ...],
+        landing: dict[int, LandingPoint],
+    ) -> None:
+        self.sample, self.line, self.time, self.lead_time = sample, line, time, lead_time
+        self.places, self.old, self.new, self.landing = places, old, new, landing
 
 
 def _gap_over_speed(trajectories: Iterable[FootTrajectory]) -> float:

@@ -215,7 +215,16 @@ class RigidMachine:
         assert found.twist is not None
         x, y, z, p, q, r = found.twist.tolist()
         found.twist[:3] = add((x, y, z), cross((p, q, r), center), -1.0)
-        return MachineOutcome(**found._asdict(), bound=Bound.UPPER)
+        return MachineOutcome(
+            twist=found.twist,
+            impulses=found.impulses,
+            velocities=found.velocities,
+            states=found.states,
+            flags=found.flags,
+            energy_lost=found.energy_lost,
+            law=found.law,
+            bound=Bound.UPPER,
+        )
 
 
 class ArticulatedMachine:

@@ -74,9 +74,9 @@ def stop_of(frames: deque[PointFrame], contact_time: int, slow: float, noise: Ga
         course = since(frames, end - COURSE * contact_time, end, FEWEST)
         if len(course) < FEWEST or rate_of(course, noise)[0] > -BRAKES * slow:
             continue
-        sums = CubicSums(*course[0][:3])
+        sums = CubicSums(course[0].stamp, course[0].gap, course[0].rate)
         for frame in course[1:]:
-            sums.add(*frame[:3])
+            sums.add(frame.stamp, frame.gap, frame.rate)
         found = sums.fit(noise.ratio if sums.measured else 0.0, (noise.gap / (JERK * SCALE**3 / 6.0)) ** 2)
         if found is None:
             continue

@@ -134,7 +134,8 @@ class ArrivalFit:
         self._level, self._tolerance, self._noise, self._unsure = level.height, tolerance, noise, level.deviation
         self._least = KNOWN * tolerance
         self._is_known = level.deviation < self._least
-        self._sums = CubicSums(*self._frames[0][:3])
+        begun = self._frames[0]
+        self._sums = CubicSums(begun.stamp, begun.gap, begun.rate)
         self._near = 0.0, 0.0
         self._tried: list[ArrivalCandidate] = []
 
@@ -156,7 +157,7 @@ class ArrivalFit:
                     self._try(k, ratio)
                 off, (near, square) = frame.gap - self._level, self._near
                 self._near = near + off, square + off * off + ratio * (SCALE * (frame.rate or 0.0)) ** 2
-            self._sums.add(*frame[:3])
+            self._sums.add(frame.stamp, frame.gap, frame.rate)
 
     def _try(self, k: int, ratio: float) -> None:
         """The arrival between frame `k`, which is the next one, and the one before."""

@@ -16,11 +16,11 @@ EXACT, NOISE = GapNoise(1e-5, 2e-4), GapNoise(2e-4, 5e-3)
 LEVEL = GroundLevel(0.0, 1e-5)
 
 
-def frame(time: float, coefficients: tuple[float, ...], noise: float = 0.0) -> PointFrame:
-    """A frame of a gap that is a polynomial of the time (s) after the landing."""
+def frame(time: float, coefficients: tuple[float, ...], noise: float = 0.0, land: int = 10**9) -> PointFrame:
+    """A frame of a gap that is a polynomial of the time (s) after the landing, which has the stamp `land` (ns)."""
     gap = sum(c * time**k for k, c in enumerate(coefficients)) + noise
     rate = sum(k * c * time ** (k - 1) for k, c in enumerate(coefficients) if k)
-    return PointFrame(round((1.0 + time) * 1e9), gap, rate, (0.0, 0.0, gap), (0.0, 0.0, rate))
+    return PointFrame(land + round(time * 1e9), gap, rate, (0.0, 0.0, gap), (0.0, 0.0, rate))
 
 
 def test_the_filter_follows_a_cubic_exactly() -> None:
@@ -52,11 +52,12 @@ def walked(
     lands = np.cumsum(0.5 + np.random.default_rng(2).uniform(-uneven, uneven, len(speeds)))
     for speed, land in zip(speeds.tolist(), (1e9 * lands).astype(int).tolist(), strict=True):
         course = (0.0, -speed, braking, 0.0 if speed else -60.0)
-        own, filtered = [], PointFilter(frame(-0.1, course)._replace(stamp=land - 100 * MS), noise)
+        own, filtered = [], PointFilter(frame(-0.1, course, land=land), noise)
         for k in range(1, 40):
             time = -0.1 + 2.5e-3 * k
-            one = frame(time, course, rng.normal(0.0, noise.gap))._replace(stamp=land + round(time * 1e9))
-            filtered.add(one._replace(rate=(one.rate or 0.0) + rng.normal(0.0, noise.rate)), noise)
+            one = frame(time, course, rng.normal(0.0, noise.gap), land)
+            one.rate = (one.rate or 0.0) + rng.normal(0.0, noise.rate)
+            filtered.add(one, noise)
             found = estimator.estimate(filtered, LEVEL, prior)
             if found is not None:
                 deviation = prior.deviations.told(found.time, found.deviation)

@@ -20,9 +20,9 @@ SCENE = Scene(1.0, ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), 0.5)
 """Contact tolerance 5 mm."""
 
 
-def frame(milliseconds: float, gap: float, rate: float | None = 0.0) -> PointFrame:
+def frame(milliseconds: float, gap: float, rate: float | None = 0.0, x: float = 0.0) -> PointFrame:
     velocity = None if rate is None else (0.0, 0.0, rate)
-    return PointFrame(round(milliseconds * MS), gap, rate, (0.0, 0.0, gap), velocity)
+    return PointFrame(round(milliseconds * MS), gap, rate, (x, 0.0, gap), velocity)
 
 
 def changes(
@@ -85,7 +85,7 @@ def test_a_foot_that_strikes_ground_where_nobody_expected_it_is_noticed_within_1
     point, ground = FootPoint(SCENE, DEAD_TIME), Ground(SCENE)
     other = FootPoint(SCENE, DEAD_TIME)
     for k in range(100):
-        other.add(frame(2.5 * k, 0.0, 0.0 if measured else None)._replace(position=(1.0, 0.0, 0.0)), ground)
+        other.add(frame(2.5 * k, 0.0, 0.0 if measured else None, x=1.0), ground)
     closed = stands = None
     for time in np.arange(1.3, 300.0, 2.5).tolist():
         rate = (0.0 if time >= 200.0 else -0.5) if measured else None
@@ -127,11 +127,12 @@ def test_a_slope_that_nobody_told_of_is_learnt() -> None:
 
 def test_a_level_through_which_a_foot_has_come_lies_deeper() -> None:
     level = GroundLevel(0.0, 0.01)
-    assert level.below(0.05, 1e-3) == pytest.approx(level, abs=1e-5)
+    same = level.below(0.05, 1e-3)
+    assert (same.height, same.deviation) == pytest.approx((0.0, 0.01), abs=1e-5)
     # The mean of the lower half of a normal deviate, and what it scatters about that.
-    assert level.below(0.0, 1e-9) == pytest.approx(
-        (-0.01 * math.sqrt(2.0 / math.pi), 0.01 * math.sqrt(1.0 - 2.0 / math.pi))
-    )
+    half = level.below(0.0, 1e-9)
+    assert half.height == pytest.approx(-0.01 * math.sqrt(2.0 / math.pi))
+    assert half.deviation == pytest.approx(0.01 * math.sqrt(1.0 - 2.0 / math.pi))
     deep = level.below(-0.1, 1e-3)
     assert deep.height == pytest.approx(-0.1, abs=2e-3)
     assert 0.0 <= deep.deviation < 2e-3
