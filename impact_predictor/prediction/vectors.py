@@ -36,11 +36,17 @@ def lines(times: Sequence[float], columns: Iterable[Sequence[float]]) -> list[tu
     count = len(times)
     middle = total(times) / count
     arms = [time - middle for time in times]
-    spread = total(map(operator.mul, arms, arms))
+    spread = 0.0
+    for arm in arms:
+        spread += arm * arm
     found = []
     for column in columns:
-        slope = total(map(operator.mul, arms, column)) / spread
-        found.append((total(column) / count - middle * slope, slope))
+        whole = turning = 0.0
+        for arm, value in zip(arms, column, strict=True):
+            whole += value
+            turning += arm * value
+        slope = turning / spread
+        found.append((whole / count - middle * slope, slope))
     return found
 
 

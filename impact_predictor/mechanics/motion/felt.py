@@ -59,23 +59,23 @@ class FeltPolynomials:
         """Nodes and divided differences of one part (Newton's form), the highest first; none where they do not fit."""
         nodes, length = self._nodes, self._length
         exact = self._exactly([(number + 0.5 + 0.5 * node) * length for node in nodes])
-        rows = [(x, y, w, a) for x, y, w, a in exact]
-        for order in range(1, len(nodes)):
-            for k in range(len(nodes) - 1, order - 1, -1):
-                gap = nodes[k] - nodes[k - order]
-                (x, y, w, a), (next_x, next_y, next_w, next_a) = rows[k - 1], rows[k]
-                rows[k] = (next_x - x) / gap, (next_y - y) / gap, (next_w - w) / gap, (next_a - a) / gap
+        columns: list[list[float]] = [list(column) for column in zip(*exact, strict=True)]
+        for column in columns:
+            for order in range(1, len(nodes)):
+                for k in range(len(nodes) - 1, order - 1, -1):
+                    column[k] = (column[k] - column[k - 1]) / (nodes[k] - nodes[k - order])
+        rows = list(zip(nodes, *columns, strict=True))
         if self._fit < math.inf and not self._fits(exact, rows):
             return []
-        return [(node, x, y, w, a) for node, (x, y, w, a) in zip(nodes, rows, strict=True)][::-1]
+        return rows[::-1]
 
-    def _fits(self, exact: Sequence[Sequence[float]], rows: list[FrameAcceleration]) -> bool:
+    def _fits(self, exact: Sequence[Sequence[float]], rows: list[tuple[float, ...]]) -> bool:
         """Whether the last two terms are small enough."""
         x, y, w, a = [max(map(abs, column)) for column in zip(*exact, strict=True)]
         sizes = max(x, y), max(x, y), w, max(a, w / self._length)
         # As terms of Chebyshev's series: those of the powers are so many times as large.
         large = self._fit * 2.0 ** (len(rows) - 3)
-        return all(abs(end) <= large * size for row in rows[-2:] for end, size in zip(row, sizes, strict=True))
+        return all(abs(end) <= large * size for row in rows[-2:] for end, size in zip(row[1:], sizes, strict=True))
 
 
 @cache

@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 from collections import deque
-from itertools import repeat
 from math import sqrt
-from operator import mul, sub
 from typing import Final, NamedTuple
 
 from ...stamps import NANOSECONDS
 from ..scatter import DifferenceNoise
 from ..types import Vector3
-from ..vectors import add, dot, lines, times, total
+from ..vectors import add, dot, lines, times
 
 LONGEST: Final = 2.0  # s: a window without end where nothing moves would hide what begins to
 APART: Final = 0.25  # s at least between two values whose difference tells how fast they change
@@ -182,10 +180,13 @@ class MotionWindow:
         scale = 2.0 / (last - first)
         weights = slope_weights([1.0 + scale * (stamp - last) for stamp in self._stamps])
         scale *= NANOSECONDS
-        # Less its last value: a large constant would leave its rounding in the slope.
-        x, y, z = [
-            scale * total(map(mul, weights, map(sub, channel, repeat(channel[-1])))) for channel in self._channels
-        ]
+        slopes = []
+        for channel in self._channels:
+            slope, end = 0.0, channel[-1]
+            for weight, value in zip(weights, channel, strict=True):
+                slope += weight * (value - end)  # a large constant would leave its rounding in the slope
+            slopes.append(scale * slope)
+        x, y, z = slopes
         self.balance.found(last, (x, y, z), (last - self._stamps[0]) / NANOSECONDS)
         return x, y, z
 
@@ -206,9 +207,14 @@ def slope_weights(x: list[float]) -> list[float]:
 
     x lies within -1 .. 1 and has both ends of it.
     """
-    squares = [each * each for each in x]
     count = len(x)
-    s1, s2, s3, s4 = total(x), total(squares), total(map(mul, x, squares)), total(map(mul, squares, squares))
+    s1 = s2 = s3 = s4 = 0.0
+    for each in x:
+        square = each * each
+        s1 += each
+        s2 += square
+        s3 += each * square
+        s4 += square * square
     # The normal equations, by minors: the weights c0 + c1 x + c2 x^2 have the moments 0, 1, 2.
     m0, m1, m2 = s1 * s4 - s2 * s3, s1 * s3 - s2 * s2, count * s3 - s1 * s2
     determinant = count * (s2 * s4 - s3 * s3) - s1 * m0 + s2 * m1
@@ -219,4 +225,4 @@ def slope_weights(x: list[float]) -> list[float]:
     c0 = part * (2.0 * m1 - m0)
     c1 = part * (count * s4 - s2 * s2 - 2.0 * m2)
     c2 = part * (2.0 * (count * s2 - s1 * s1) - m2)
-    return [c0 + c1 * each + c2 * square for each, square in zip(x, squares, strict=True)]
+    return [c0 + c1 * each + c2 * (each * each) for each in x]
