@@ -143,7 +143,7 @@ class MotionEngine:
     def _change(self, phase: MotionPhase, end: PhaseEnd) -> None:
         """An event of closed contacts."""
         (event, contact, at), i = end, phase.contact
-        _, u, w, z, s, _, _ = at
+        u, w, z, s = at.u, at.w, at.z, at.s
         if event is Event.TOUCHES:
             self._strike_other(1 - contact, w, z, s)
         elif event is Event.YIELDS or event is Event.STOPS:

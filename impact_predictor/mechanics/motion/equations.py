@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import math
 from itertools import combinations
-from typing import Any, Final, NamedTuple
+from typing import Any, Final
 
 from ...errors import InputError
 from ..bodies import sine_and_cosine
@@ -28,22 +28,16 @@ PlanarWrench = tuple[float, float, float]
 """A force and its moment about the mass centre."""
 
 
-class ContactForces(NamedTuple):
+class ContactForces:
     """What a closed contact does: accelerations of turning (rad/s^2) and slip (m/s^2), and its reaction.
 
     The reaction for a mass of 1 (m/s^2) is along normal and tangent; `free` is the acceleration out of the support that
     the contact would have without it.
     """
 
-    alpha: float
-    beta: float
-    normal: float
-    tangential: float
-    free: float
-
-
-_NONE = ContactForces(alpha=math.nan, beta=math.nan, normal=math.nan, tangential=math.nan, free=-1.0)
-"""No finite reaction keeps the slipping contact on the support (Painleve)."""
+    # No tuple: machine code makes objects of its own in a tenth of the time.
+    def __init__(self, alpha: float, beta: float, normal: float, tangential: float, free: float) -> None:
+        self.alpha, self.beta, self.normal, self.tangential, self.free = alpha, beta, normal, tangential, free
 
 
 class RockingBody:
@@ -69,13 +63,16 @@ class RockingBody:
         """
         old, new = body.old, body.new
         assert old is not None
-        self.lean, self.arms, self.edges, self.radius = lean, arms, edges, radius
+        self.lean, self.radius = lean, radius
+        # As tuples of any length: machine code makes those of a known one anew at each index.
+        self.arms: tuple[Vector, ...] = arms
+        self.edges: tuple[Vector, ...] = edges
         self.spin = 1.0 / radius if self.rolls else 0.0
         """By how much the body turns where a contact slips by 1 m."""
         self.rho_squared = body.inertia / body.mass
-        self.friction = old.friction, new.friction
-        self.restitution = old.restitution, new.restitution
-        self.inertia = tuple(self.rho_squared + x * x + y * y for x, y in arms)
+        self.friction: tuple[float, ...] = (old.friction, new.friction)
+        self.restitution: tuple[float, ...] = (old.restitution, new.restitution)
+        self.inertia = tuple([self.rho_squared + x * x + y * y for x, y in arms])
         self.length = math.sqrt(self.rho_squared) + max(math.hypot(x, y) for x, y in arms)
         self._facets: tuple[PlanarWrench, ...] | None = None
 
@@ -120,7 +117,7 @@ class RockingBody:
             omega=w + spin * s,
         )
 
-    def felt_at(self, felt: tuple[Any, Any, Any, Any], x: float, y: float, vx: float, vy: float) -> tuple[Any, Any]:
+    def felt_at(self, felt: FrameAcceleration, x: float, y: float, vx: float, vy: float) -> Vector:
         """Acceleration that the mass centre feels."""
         gx, gy, rate, spin_up = felt
         return (
@@ -155,7 +152,9 @@ class RockingBody:
         drag = self.friction[i] if slides == PLUS else -self.friction[i]
         bracket = nn - drag * nt
         if bracket <= 0.0:
-            return _NONE if free < 0.0 else _NONE._replace(free=0.0)
+            # No finite reaction keeps the slipping contact on the support (Painleve).
+            none, free = math.nan, -1.0 if free < 0.0 else 0.0
+            return ContactForces(alpha=none, beta=none, normal=none, tangential=none, free=free)
         push = -free / bracket
         drive = -drag * push
         beta = free_slip + nt * push + tt * drive
@@ -224,9 +223,10 @@ class RockingBody:
 
     def hold_margins(self, felt: tuple[Any, Any, Any, Any], z: float) -> list[Any]:
         """What must not be negative while the body rests on both contacts, in m/s^2; numbers or arrays over time."""
-        place = self.state(0, 0.0, 0.0, z, 0.0)
-        fx, fy = self.felt_at(felt, place.x, place.y, 0.0, 0.0)
-        moment = math.sqrt(self.rho_squared) * felt[3]
+        (x, y), (gx, gy, rate, spin_up) = self.arms[0], felt
+        x += self.along * z
+        fx, fy = gx + spin_up * y + rate * (rate * x), gy - spin_up * x + rate * (rate * y)
+        moment = math.sqrt(self.rho_squared) * spin_up
         return [kx * -fx + ky * -fy + km * moment for kx, ky, km in self.facets]
 
 

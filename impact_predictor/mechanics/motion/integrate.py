@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, Final, NamedTuple
+from typing import TYPE_CHECKING, Any, Final
 
 from ..types import Vector
 
@@ -38,16 +38,15 @@ Rate = Callable[[float, float, float, float, float], tuple[float, float]]
 """Accelerations (turning, slip) from time, turned angle, its rate, slipped way and its rate."""
 
 
-class Instant(NamedTuple):
+class Instant:
     """Time in s; turned angle in rad, slipped way in m; their rates and accelerations."""
 
-    time: float
-    u: float
-    w: float
-    z: float
-    s: float
-    alpha: float
-    beta: float
+    def __init__(self, time: float, u: float, w: float, z: float, s: float, alpha: float, beta: float) -> None:
+        self.time, self.u, self.w, self.z, self.s, self.alpha, self.beta = time, u, w, z, s, alpha, beta
+
+    def at(self, time: float) -> Instant:
+        """The same at another time."""
+        return Instant(time, self.u, self.w, self.z, self.s, self.alpha, self.beta)
 
 
 def step(rate: Rate, now: Instant, h: float, scale: Vector, tolerance: float) -> tuple[Instant, int]:
@@ -63,7 +62,7 @@ def step(rate: Rate, now: Instant, h: float, scale: Vector, tolerance: float) ->
 
 
 def _extrapolate(rate: Rate, now: Instant, h: float, scale: Vector, tolerance: float) -> tuple[Instant, int]:
-    time, u, w, z, s, alpha, beta = now
+    time, u, w, z, s, alpha, beta = now.time, now.u, now.w, now.z, now.s, now.alpha, now.beta
     size = abs(h)
     length, weight = scale
     rounding = _ROUNDING * size * size * weight
@@ -104,9 +103,11 @@ def _extrapolate(rate: Rate, now: Instant, h: float, scale: Vector, tolerance: f
 
 def nudged(rate: Rate, now: Instant, h: float) -> Instant:
     """A step so short that the third power of its length is rounding."""
-    time, u, w, z, s, alpha, beta = now
+    u, w, z, s, alpha, beta = now.u, now.w, now.z, now.s, now.alpha, now.beta
+    time = now.time + h
     u, w, z, s = u + h * (w + 0.5 * h * alpha), w + h * alpha, z + h * (s + 0.5 * h * beta), s + h * beta
-    return Instant(time + h, u, w, z, s, *rate(time + h, u, w, z, s))
+    alpha, beta = rate(time, u, w, z, s)
+    return Instant(time, u, w, z, s, alpha, beta)
 
 
 def middle_of(now: Instant, then: Instant) -> Instant:
@@ -127,10 +128,10 @@ def add_dense(
     h, length = end.time - now.time, scale[0]
     middle, rows = step(rate, now, 0.5 * h, scale, tolerance)
     if not rows:
-        middle = now._replace(time=now.time + 0.5 * h, u=math.nan)
+        middle = Instant(now.time + 0.5 * h, math.nan, now.w, now.z, now.s, now.alpha, now.beta)
     elif math.isnan(end.u):
         then, rows = step(rate, middle, 0.5 * h, scale, tolerance)
-        end = then._replace(time=end.time) if rows else end
+        end = then.at(end.time) if rows else end
     if rows:
         guess = middle_of(now, end)
         size = length * (abs(now.w) + abs(end.w)) + abs(now.s) + abs(end.s) + h * length * abs(middle.alpha)
@@ -150,7 +151,8 @@ def values_at(instants: list[Instant], times: NDArray[np.float64]) -> tuple[Any,
     """u, w, z and s at some times, from polynomials of degree 5 between instants."""
     import numpy as np
 
-    known, u, w, z, s, alpha, beta = np.array(instants).T
+    numbers = [(one.time, one.u, one.w, one.z, one.s, one.alpha, one.beta) for one in instants]
+    known, u, w, z, s, alpha, beta = np.array(numbers).T
     k = np.clip(np.searchsorted(known, times, side="right") - 1, 0, max(0, len(known) - 2))
     then = np.minimum(k + 1, len(known) - 1)
     h = np.where(known[then] > known[k], known[then] - known[k], 1.0)

@@ -104,7 +104,8 @@ class MotionPhase:
         else:
             self.events = *touches, (Event.STOPS, i), (Event.LIFTS, i)
         self.scale = self.body.length, max(abs(support.gravity), abs(felt[0]) + abs(felt[1]))
-        self.instants = [Instant(0.0, *place, 0.0, 0.0)]
+        u, w, z, s = place
+        self.instants = [Instant(0.0, u, w, z, s, 0.0, 0.0)]
         """The ends of the steps."""
         if self.moves and not self.pivots:
             self.instants = [self._accelerated(self.instants[0])]
@@ -123,7 +124,7 @@ class MotionPhase:
         """End the phase at an instant that the summed impacts lead to, uniformly."""
         now = self.instants[0]
         w, s = ((end.u - now.u) / end.time, (end.z - now.z) / end.time) if end.time > 0.0 else (0.0, 0.0)
-        self.instants = self._dense = [one._replace(w=w, s=s, alpha=0.0, beta=0.0) for one in (now, end)]
+        self.instants = self._dense = [Instant(one.time, one.u, w, one.z, s, 0.0, 0.0) for one in (now, end)]
 
     def dense(self) -> list[Instant]:
         """Instants of the phase between which polynomials tell where it is, made when they are first asked for."""
@@ -173,8 +174,8 @@ class MotionPhase:
                     continue
                 at, k = then, (late or crossed)[0]
                 if not late:
-                    found = [(_Crossing(self, now, then, k).find(before[k], after[k]), k) for k in crossed]
-                    at, k = min(found)
+                    found = [_Crossing(self, now, then, k).find(before[k], after[k]) for k in crossed]
+                    _, k, at = min([(one.time, k, one) for one, k in zip(found, crossed, strict=True)])
                 self.instants.append(at)
                 return PhaseEnd(*self.events[k], at)
             self._pass(then)
@@ -193,9 +194,9 @@ class MotionPhase:
 
     def conditions(self, now: Instant) -> list[Condition]:
         """What stays positive until one of `events`."""
-        time, u, w, z, s, _, beta = now
-        felt = self._felt(time)
-        stops = self.slip * s, self.slip * beta
+        u, w, z, s = now.u, now.w, now.z, now.s
+        felt = self._felt(now.time)
+        stops = self.slip * s, self.slip * now.beta
         if self.both:
             _, normal, normal_b = self.body.forces_of_both(self.state, felt, z, s)
             return [stops, (normal, math.nan), (normal_b, math.nan)]
@@ -211,8 +212,8 @@ class MotionPhase:
         return self.felt if self.fixed else self.support.felt(self.start + time)
 
     def _accelerated(self, now: Instant) -> Instant:
-        alpha, beta = self.rate(*now[:5])
-        return now._replace(alpha=alpha, beta=beta)
+        alpha, beta = self.rate(now.time, now.u, now.w, now.z, now.s)
+        return Instant(now.time, now.u, now.w, now.z, now.s, alpha, beta)
 
     def _first_step(self, now: Instant, last: float) -> float:
         """Length of the first step; sets the longest and the shortest one, too."""
@@ -255,7 +256,8 @@ class MotionPhase:
     def _turn(self, last: float) -> PhaseEnd:
         """Turn about one point at rest to the first event, in closed form."""
         contact, side = self.contact, self.side
-        time, u, w, _, _, _, _ = self.instants[0]
+        start = self.instants[0]
+        time, u, w = start.time, start.u, start.w
         pivot = self._pivot(u, w)
         event: Event | End = pivot.event
         if event is Event.TURNS_BACK and u == 0.0:
@@ -275,7 +277,7 @@ class MotionPhase:
                 event, u = End.OVERTURNED, side * self.limit
         if not time <= last:  # where it is then, its dense output finds
             event, contact, time, u = End.TIME_UP, self.contact, last, math.nan
-        self.instants.append(self.instants[0]._replace(time=time, u=u, w=w))
+        self.instants.append(Instant(time, u, w, start.z, start.s, start.alpha, start.beta))
         return PhaseEnd(event, contact, self.instants[-1])
 
     def _pivot(self, u: float, w: float) -> Pivot:
@@ -396,7 +398,7 @@ class _Crossing:
             here = nudged(phase.rate, self.here, span)
         else:
             here, _ = step(phase.rate, self.here, span, phase.scale, phase.tolerance)
-        self.here, self.place = here._replace(time=self.start + place), place
+        self.here, self.place = here.at(self.start + place), place
         return phase.conditions(self.here)[self.k]
 
 

@@ -66,7 +66,8 @@ def slide(
         heading = omega or phase.instants[0].alpha
         if travel[heading > 0.0] <= 0.0 and not math.isnan(phase.instants[0].alpha) and heading:
             return still._replace(event=Event.TOUCHES if omega else Event.NEVER)
-        event, _, (time, angle, rate, _, _, _, _) = phase.follow(min(horizon, _LONGEST), _MAX_STEPS)
+        event, _, end = phase.follow(min(horizon, _LONGEST), _MAX_STEPS)
+        time, angle, rate = end.time, end.u, end.w
     except (ArithmeticError, ValueError):  # numbers overflow
         return still._replace(event=Event.JAMS)
     direction = -1 if event is Event.TOUCHES else 1

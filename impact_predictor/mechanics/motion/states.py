@@ -102,10 +102,10 @@ def rest(phase: MotionPhase, after: float, last: float, most: int) -> PhaseEnd:
         times = np.minimum(time + spacing * np.arange(2 * block + 1), last)
         at = _first_fall(phase, support, times)
         if at is not None:
-            phase.instants.append(here._replace(time=at))
+            phase.instants.append(here.at(at))
             return PhaseEnd(Event.YIELDS, phase.contact, phase.instants[-1])
         time, block = float(times[-1]), min(2 * block, _LAST_BLOCK)
-    phase.instants.append(here._replace(time=max(time, here.time)))
+    phase.instants.append(here.at(max(time, here.time)))
     event = End.TIME_UP if time >= last else End.TOO_MANY_EVENTS
     return PhaseEnd(event, phase.contact, phase.instants[-1])
 
