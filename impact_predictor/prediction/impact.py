@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from math import hypot
 from typing import TYPE_CHECKING, Final, NamedTuple
 
@@ -201,7 +202,13 @@ def leftover_of(scene: Scene, *, stands: bool, strays: bool, apart: bool, speed:
         leftover |= ONE_CORNER_FIRST
     if speed < SLOWEST * hardly(scene):
         leftover |= TOO_SLOW
-    return Leftover(leftover)
+    return leftover_named(leftover)
+
+
+@cache
+def leftover_named(bits: int) -> Leftover:
+    """What is left over, by its bits: looked up once, because making a flag is slow."""
+    return Leftover(bits)
 
 
 ONE_POINT, OUT_OF_PLANE, ONE_CORNER_FIRST, TOO_SLOW = (

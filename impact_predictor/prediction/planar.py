@@ -12,6 +12,7 @@ from math import copysign, hypot, inf, sqrt
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 from ..mechanics.impact.answer import mode_of
+from ..mechanics.impact.solve import MODES
 from ..mechanics.types import ContactState, Mode, Twist, Vector
 from .scene import Scene
 from .types import PointOutcome, Sample, SpatialTwist, Vector3
@@ -151,7 +152,7 @@ def mode_of_contacts(old: Sequence[PointOutcome], new: Sequence[PointOutcome], n
     for group in (old, new):
         rate = total([dot(normal, contact.velocity) for contact in group]) / len(group) if group else inf
         speeds += [rate, inf if any(contact.state is ContactState.SLIPS for contact in group) else 0.0]
-    return Mode(mode_of(least, *speeds))
+    return MODES[mode_of(least, *speeds)]
 
 
 def planar_twist(twist: SpatialTwist, ahead: Vector3, normal: Vector3, axis: Vector3) -> Twist:

@@ -104,7 +104,9 @@ class SpatialImpactModel:
         after = SpatialTwist((vx, vy, vz), (wx, wy, wz))
         stood, struck = contacts[:count], contacts[count:]
         axis, ahead, center, angular = plane.axis, plane.ahead, scene.center_of_mass, to_body(now, after.angular)
-        spread = max(collision.gaps[count:]) / speed
+        spread, told = max(collision.gaps[count:]) / speed, flags_named(notes)
+        if self._leaves_out(collision, after, now):
+            told |= Flag.POINT_APPROACHES
         return Touchdown(
             lead_time=collision.lead_time,
             mode=mode_of_contacts(stood, struck, normal, least) if drawn is None else drawn.mode,
@@ -113,7 +115,7 @@ class SpatialImpactModel:
             impulses=(along_plane(stood, ahead, normal), along_plane(struck, ahead, normal)),
             segments=(),
             energy_lost=lost,
-            flags=flags_named(notes) | self._unmet(collision, after, now),
+            flags=told,
             unique=True,
             law=scene.law,
             old=old,
@@ -176,16 +178,16 @@ class SpatialImpactModel:
                 answer[j] += mean[j]
         return answer
 
-    def _unmet(self, collision: SpatialCollision, after: SpatialTwist, now: Axes) -> Flag:
-        """The flag of a twist with which a point that took no part closes within a compression after the impact."""
+    def _leaves_out(self, collision: SpatialCollision, after: SpatialTwist, now: Axes) -> bool:
+        """Whether with a twist a point that took no part closes within a compression after the impact."""
         scene, normal = self._scene, to_body(now, self._scene.normal)
         height, rate = dot(collision.position, scene.normal) - scene.height, dot(after.linear, scene.normal)
         turning = cross(normal, to_body(now, after.angular))
         for i, place in enumerate(collision.places):
             speed = -rate - dot(turning, place)
             if speed > MOVES and i not in collision.points and height + dot(normal, place) < speed * scene.merge:
-                return Flag.POINT_APPROACHES
-        return Flag.NONE
+                return True
+        return False
 
     def _problem(self, collision: SpatialCollision, axes: Axes) -> NDArray[np.float64]:
         """The numbers of a collision as the law takes them (see `mechanics.impact.spatial_body`)."""
