@@ -185,7 +185,9 @@ def test_points_that_are_no_corners_of_a_box_are_drawn_as_lines_from_the_mass_ce
 
 @pytest.mark.parametrize("direction", [(0.0, 0.0, 1.0), (0.0, 0.0, -1.0), (1.0, 0.0, 0.0), (0.6, 0.0, -0.8)])
 def test_z_is_turned_to_any_direction(direction: Vector3) -> None:
-    assert axes_of(turn_to(direction))[2] == pytest.approx(direction, abs=1e-12)  # rounding of a unit quaternion
+    turn = turn_to(direction)
+    assert hypot(*turn) == pytest.approx(1.0)
+    assert axes_of(turn)[2] == pytest.approx(direction, abs=1e-12)  # rounding of a unit quaternion
 
 
 def test_the_ghost_stands_where_the_body_is_predicted_to_touch_down(predicted: Prediction) -> None:
