@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from math import hypot
 
+from .deck.frame import pull_at
 from .monitor import Monitor
+from .planar import ORIGIN
 from .scene import Scene
 from .types import Status, Vector3
-from .vectors import add, cross
 from .watch.stance import placed
 
 
@@ -23,9 +24,9 @@ class FeltMonitor(Monitor):
     def _moved(self, status: Status, stamp: int) -> Status:
         moment = None if self.deck is None else self.deck.last
         if status is Status.ACCEPTED and moment is not None:
-            (gravity, angular, turning), rest = moment.felt, hypot(*moment.gravity)
-            for name, r in self._centers.items():
-                x, y, z = add(add(gravity, cross(turning, r), -1.0), cross(angular, cross(angular, r)), -1.0)
+            rest = hypot(*moment.gravity)
+            for name, center in self._centers.items():
+                x, y, z = pull_at(moment.felt, center, ORIGIN)
                 a, b, c = self.largest.get(name, (0.0, 0.0, 0.0))
                 self.largest[name] = max(a, abs(x)), max(b, abs(y)), max(c, abs(z + rest))
         return super()._moved(status, stamp)
