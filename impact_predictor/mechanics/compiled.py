@@ -83,7 +83,9 @@ def without_numba(make: Callable[[str, Any], Callable[..., Any]], law: ModuleTyp
         taken = []
         for name, one in zip(names, given, strict=True):
             if name == "work":
-                taken.append(scratch[len(one)] if len(one) in scratch else scratch.setdefault(len(one), flat(one)))
+                if len(one) not in scratch:
+                    scratch[len(one)] = flat(one)
+                taken.append(scratch[len(one)])
             else:
                 taken.append(flat(one) if hasattr(one, "tolist") else one)
         result = function(*taken)

@@ -17,12 +17,12 @@ from ..errors import InputError
 from ..mechanics.compiled import without_numba
 from ..mechanics.impact import spatial_body
 from ..mechanics.impact.answer import mode_of
-from ..mechanics.impact.solve import number_of
+from ..mechanics.impact.solve import MODES, number_of
 from ..mechanics.impact.spatial import STEPS, flags_named, make_bodies, workspace
 from ..mechanics.impact.spatial_body import ANSWER, RESULT
 from ..mechanics.motion import PlanarState, next_strike
 from ..mechanics.motion.support import FeltSupport, FixedSupport
-from ..mechanics.types import Contact, ContactState, Mode, Twist, TwoPointBody, Vector
+from ..mechanics.types import Contact, ContactState, Twist, TwoPointBody, Vector
 from .deck.frame import gravity_over, is_uniform, planar_support
 from .impact import Collision, collision_after
 from .planar import (
@@ -196,7 +196,7 @@ class CylinderContacts(PointContacts):
         now = axes_of(told.orientation)
         angular = to_body(now, after.angular)
         return told._replace(
-            mode=Mode(mode_of(RESTS * collision.speed, *speeds)),
+            mode=MODES[mode_of(RESTS * collision.speed, *speeds)],
             after=Twist(vx, vy, wz),
             impulses=(impulses[0], impulses[1]),
             segments=(),

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..mechanics.compiled import door
+from ..mechanics.impact.solve import MODES
 from ..mechanics.impact.spatial import STEPS
 from ..mechanics.impact.spatial_body import ANSWER, BODY, CONTACT, RESULT
 from ..mechanics.types import Mode, Twist
@@ -29,8 +30,6 @@ from .vectors import Axes, cross
 
 DRAW_STEPS = 5
 """Steps of the law for a draw: its error is small beside what the draws differ by."""
-
-MODES = tuple(Mode)
 
 
 class DrawnImpact(NamedTuple):

@@ -225,6 +225,7 @@ class RockingBody:
         """What must not be negative while the body rests on both contacts, in m/s^2; numbers or arrays over time."""
         (x, y), (gx, gy, rate, spin_up) = self.arms[0], felt
         x += self.along * z
+        # As `felt_at` of what is at rest, which takes no arrays: it is asked for at each step.
         fx, fy = gx + spin_up * y + rate * (rate * x), gy - spin_up * x + rate * (rate * y)
         moment = math.sqrt(self.rho_squared) * spin_up
         return [kx * -fx + ky * -fy + km * moment for kx, ky, km in self.facets]

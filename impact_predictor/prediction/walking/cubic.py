@@ -24,14 +24,15 @@ its diagonal in the place of that."""
 
 
 class GapNoise:
-    """Standard deviations of a gap (m) and of its rate (m/s).
-
-    `ratio` is what the square of a rate in units of the scale counts beside that of a gap, by how much surer it is.
-    """
+    """Standard deviations of a gap (m) and of its rate (m/s)."""
 
     def __init__(self, gap: float, rate: float) -> None:
         self.gap, self.rate = gap, rate
-        self.ratio = (gap / (rate * SCALE)) ** 2
+
+    @property
+    def ratio(self) -> float:
+        """What the square of a rate in units of the scale counts beside that of a gap, by how much surer it is."""
+        return (self.gap / (self.rate * SCALE)) ** 2
 
 
 class PointFrame:

@@ -76,14 +76,14 @@ def touchdown_of(
     axes = axes_of(base.orientation)
     moves, arms, gaps, fastest, strikes = {}, [], [], 0.0, False
     for i in those:
-        struck = landing.get(i, AT_REST)
-        velocity, rate = struck.velocity, dot(normal, struck.velocity)
+        point = landing.get(i, AT_REST)
+        velocity, rate = point.velocity, dot(normal, point.velocity)
         # What only grazes the support, or leaves it, rests.
         approach = rate if rate < -GRAZES else 0.0
         velocity = add(velocity, normal, approach - rate)
         moves[i] = velocity
         arms.append(add(places[i], base.position, -1.0))
-        gaps.append(-approach * struck.delay)
+        gaps.append(-approach * point.delay)
         fastest, strikes = max(fastest, dot(velocity, velocity)), strikes or approach < 0.0
     met = ContactPoints(
         positions=arms,
@@ -109,15 +109,15 @@ def touchdown_of(
     )
     same_foot = [i for i in stood if i // walking.points == new[0] // walking.points]
     old = tuple([i for i in landing if i not in new] or same_foot or stood)
-    others, own = ([contact for contact in contacts if contact.point in group] for group in (old, new))
+    others, struck = ([contact for contact in contacts if contact.point in group] for group in (old, new))
     striking, middle = mean([moves[i] for i in new]), mean([places[i] for i in new])
     feet, delays, masses = [places[i] for i in old], [landing[i].delay for i in new], add(base.position, center)
     ahead = ahead_of(scene, feet, middle, striking, masses)
     axis = cross(normal, ahead)
-    impulses = along_plane(others, ahead, normal), along_plane(own, ahead, normal)
+    impulses = along_plane(others, ahead, normal), along_plane(struck, ahead, normal)
     # An estimate goes on for the contact time: what rises no faster than gravity takes back in it does not lift.
     least = hardly(scene) if found.bound is Bound.ESTIMATE else LIFTS * sqrt(fastest)
-    mode = mode_of_contacts(others, own, normal, least) if strikes else Mode.NO_IMPACT
+    mode = mode_of_contacts(others, struck, normal, least) if strikes else Mode.NO_IMPACT
     flags = found.flags
     if strikes and is_slow(impulses[1][0] / scene.mass, scene.validity):
         flags |= Flag.SLOW_IMPACT
