@@ -39,8 +39,9 @@ from impact_predictor.prediction.planar import hardly
 from impact_predictor.prediction.scene import Robot, Scene, scenes_of, triple
 from impact_predictor.prediction.types import Geometry, Joints, Sample, Touchdown
 from impact_predictor.prediction.vectors import add, axes_of, cross, to_world
+from impact_predictor.prediction.walking.articulated import ArticulatedMachine
+from impact_predictor.prediction.walking.base import twist_of
 from impact_predictor.prediction.walking.impact import LandingPoint, touchdown_of
-from impact_predictor.prediction.walking.mechanism import ArticulatedMachine, twist_of
 from impact_predictor.report.table import Column, say, show, table_of
 from impact_predictor.ros.messages import JOINT_STATE, ODOMETRY
 from impact_predictor.ros.messages.inputs import decode_joints, decode_odometry

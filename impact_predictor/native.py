@@ -27,8 +27,8 @@ _COMPILED = {
     "prediction": "checks cylinder impact motion_recorder planar points predictor recorded scatter spatial vectors",
     "prediction.deck": "frame motion window",
     "prediction.walking": (
-        "announcement braking clock cubic descent doubts feet forces ground impact landings point_filter rest rhythm "
-        "schedule stance terrain trajectory"
+        "announcement base braking clock cubic descent doubts feet forces ground impact landings machine point_filter "
+        "rest rhythm schedule stance terrain trajectory"
     ),
     "prediction.watch": "stance standing",
     "ros": "cdr",

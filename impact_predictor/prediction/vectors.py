@@ -42,9 +42,11 @@ def lines(times: Sequence[float], columns: Iterable[Sequence[float]]) -> list[tu
     found = []
     for column in columns:
         whole = turning = 0.0
-        for arm, value in zip(arms, column, strict=True):
+        # Machine code makes a loop of numbers of this, and calls Python for a zip that is strict.
+        for k in range(count):
+            value = column[k]
             whole += value
-            turning += arm * value
+            turning += arms[k] * value
         slope = turning / spread
         found.append((whole / count - middle * slope, slope))
     return found

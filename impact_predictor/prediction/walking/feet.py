@@ -29,13 +29,15 @@ from ..types import (
 )
 from ..vectors import add, axes_of, cross, dot, times, to_body, to_world
 from .announcement import ExpectedLanding
+from .articulated import ArticulatedMachine, LeggedMachine
+from .base import REMEMBERED, BaseMotion
 from .clock import Delay, FeetClock
 from .cubic import PointFrame
 from .doubts import GroundDoubts
 from .forces import FootForces
 from .ground import Ground
 from .landings import LandingTracker
-from .mechanism import REMEMBERED, ArticulatedMachine, BaseMotion, LeggedMachine, RigidMachine
+from .machine import RigidMachine
 from .schedule import LandingSchedule
 from .stance import FootPoint
 from .terrain import TerrainMap

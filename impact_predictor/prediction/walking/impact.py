@@ -24,7 +24,8 @@ from ..planar import (
 from ..scene import Scene
 from ..types import Bound, Leftover, PointOutcome, Sample, SpatialTwist, Status, Touchdown, Vector3
 from ..vectors import add, axes_of, cross, dot, mean, times, to_body, to_world
-from .mechanism import NOTHING, LeggedMachine
+from .articulated import LeggedMachine
+from .base import NOTHING
 
 USABLE: Final = 0.2
 """The machine turns about the line of its standing points where the landing one is further from it than this part of

@@ -18,11 +18,12 @@ from ..score import LONGEST, MEASURED, Pending, Track
 from ..types import Landing, Sample, Score, Status, Touchdown, Vector3
 from ..vectors import mean
 from .announcement import ExpectedLanding
+from .articulated import LeggedMachine
+from .base import NOTHING, BaseMotion, TwistLine, extrapolated
 from .cubic import PointFrame
 from .forces import FootForces
 from .ground import Ground
 from .impact import LandingPoint, touchdown_of
-from .mechanism import NOTHING, BaseMotion, LeggedMachine, TwistLine, extrapolated
 from .schedule import LandingSchedule
 from .stance import FootPoint
 from .trajectory import FootTrajectory

@@ -8,7 +8,7 @@ import pytest
 
 from impact_predictor.prediction.types import Sample
 from impact_predictor.prediction.vectors import axes_of, to_body, to_world
-from impact_predictor.prediction.walking.mechanism import FEWEST, BaseMotion, extrapolated
+from impact_predictor.prediction.walking.base import FEWEST, BaseMotion, extrapolated
 
 PERIOD = 2_500_000
 ZEROS = (0.0,) * 36

@@ -44,7 +44,7 @@ def urdf(tmp_path_factory):
 
 
 def machine(urdf, **told):
-    from impact_predictor.prediction.walking.mechanism import ArticulatedMachine
+    from impact_predictor.prediction.walking.articulated import ArticulatedMachine
 
     made = ArticulatedMachine(Robot(urdf, FEET, **told))
     made.geometry_of(Joints(0, JOINTS, BENT, ()))

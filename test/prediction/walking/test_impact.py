@@ -13,7 +13,7 @@ from impact_predictor.prediction.scene import Scene, Walking
 from impact_predictor.prediction.types import Leftover, Sample, Status
 from impact_predictor.prediction.vectors import add, axes_of, cross, to_world
 from impact_predictor.prediction.walking.impact import LandingPoint, touchdown_of
-from impact_predictor.prediction.walking.mechanism import RigidMachine
+from impact_predictor.prediction.walking.machine import RigidMachine
 
 FEET = ((0.31, 0.29, -0.58), (0.31, -0.29, -0.58), (-0.31, 0.29, -0.58), (-0.31, -0.29, -0.58))
 LEVEL = (0.0, 0.0, 0.0, 1.0)

@@ -43,7 +43,7 @@ def frog(tmp_path):
 
 def articulated(tmp_path, massless=False):
     pytest.importorskip("pinocchio", reason="needs the extra articulated")
-    from impact_predictor.prediction.walking.mechanism import ArticulatedMachine
+    from impact_predictor.prediction.walking.articulated import ArticulatedMachine
 
     path = tmp_path / "frog.urdf"
     body = LINK.format(name="body", place="0 0 0", mass=10.0)

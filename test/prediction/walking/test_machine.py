@@ -7,7 +7,7 @@ from impact_predictor.errors import InputError
 from impact_predictor.mechanics.impact.spatial import ContactPoints
 from impact_predictor.prediction.scene import Robot, Scene, inertia_matrix
 from impact_predictor.prediction.types import Joints
-from impact_predictor.prediction.walking.mechanism import RigidMachine
+from impact_predictor.prediction.walking.machine import RigidMachine
 
 URDF = """<robot name="block">
   <link name="body"><inertial><origin xyz="{place}"/><mass value="{mass:.17g}"/>
@@ -48,7 +48,7 @@ def test_a_body_whose_inertia_has_no_inverse_is_refused_in_one_sentence():
 @pytest.mark.extras
 def test_a_machine_without_joints_is_a_trunk(tmp_path):
     pytest.importorskip("pinocchio", reason="needs the extra articulated")
-    from impact_predictor.prediction.walking.mechanism import ArticulatedMachine
+    from impact_predictor.prediction.walking.articulated import ArticulatedMachine
 
     source = np.random.default_rng(2)
     path = tmp_path / "block.urdf"
