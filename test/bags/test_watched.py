@@ -54,12 +54,19 @@ def test_the_angles_are_those_of_the_deck_port_up_and_bow_down(roll: float, pitc
 
 def test_a_row_has_the_most_that_was_used_of_the_margins_since_the_one_before() -> None:
     recorder, watch, deck = kept()
-    for stamp, tip in ((STEP, 0.3), (STEP + 50, 0.9), (STEP + 100, 0.4), (2 * STEP, 0.2), (3 * STEP, 0.1)):
-        watch.margins = np.array([0.2]), np.array([tip])
+    for stamp, slide, tip in (
+        (STEP, 0.2, 0.3),
+        (STEP + 50, 0.1, 0.9),
+        (STEP + 100, 0.5, 0.4),
+        (2 * STEP, 0.3, 0.2),
+        (3 * STEP, 0.0, 0.1),
+    ):
+        watch.margins = np.array([slide]), np.array([tip])
         deck.last = moment(stamp)
         recorder.look()
     log = recorder.log()
     assert log.stamps.tolist() == [STEP, 2 * STEP, 3 * STEP]
+    assert log.units[:, 0, 1].tolist() == [0.2, 0.5, 0.0]
     assert log.units[:, 0, 2].tolist() == [0.3, 0.9, 0.1]
 
 

@@ -4,10 +4,15 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
 import pytest
+from boxes import TRUTH, touchdowns
 
-from impact_predictor.calibration.scene_file import NewValues, changed, number_text
+from impact_predictor.calibration.fit import Calibration
+from impact_predictor.calibration.scene_file import NewValues, changed, changes_of, number_text
+from impact_predictor.calibration.search import Estimate
 from impact_predictor.parameters.file import read_parameters
+from impact_predictor.prediction.scene import inertia_matrix
 from impact_predictor.resources import find
 
 FRICTION = {"contact.friction": NewValues((0.2287,), "fitted")}
@@ -71,3 +76,23 @@ def test_the_value_that_wins_is_changed_where_several_sections_set_it(tmp_path: 
 )
 def test_a_number_is_written_as_a_double(value: float, text: str) -> None:
     assert number_text(value) == text
+
+
+@pytest.mark.parametrize(
+    ("given", "fitted"),
+    [
+        ((0.2,), (0.3,)),
+        ((0.2, 0.4, 0.5, 0.0, 0.0, 0.0), (0.3, 0.6, 0.75, 0.0, 0.0, 0.0)),
+        ((0.2, 0.2, 0.2, 0.0, 0.0, 0.1), (0.3, 0.3, 0.3, 0.0, 0.0, 0.15)),
+    ],
+)
+def test_a_factor_multiplies_the_inertia_and_one_that_is_alike_about_all_axes_stays_one_number(
+    given: tuple[float, ...], fitted: tuple[float, ...]
+) -> None:
+    (one,), none = touchdowns(number=1), np.zeros(1)
+    one = one._replace(scene=one.scene._replace(inertia=inertia_matrix(given)))
+    factor = Estimate(given=1.0, value=1.5, low=1.4, high=1.6, known=True)
+    calibration = Calibration((one,), np.zeros(1, int), {"inertia": factor}, TRUTH, none, none, {})
+    change = changes_of(calibration)["body.inertia"]
+    assert change.values == pytest.approx(fitted)
+    assert change.listed

@@ -6,9 +6,11 @@ from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 from importlib.util import find_spec
+from itertools import combinations
 from statistics import median
 
 import bench_peers
+import numpy as np
 import pytest
 
 from impact_predictor.mechanics.impact import solve_impact
@@ -86,6 +88,17 @@ def spatial_errors(name: str, solve: Callable[[StruckBox], SpatialAftermath]) ->
     """The errors of a method on boxes that strike as they are called, in ascending order."""
     boxes = problems({scene.name: draw for scene, draw in spatial.SCENES.items()}[name], name, 12)
     return sorted(spatial.errors_of(one, solve(one), spatial.reference_of(one))["twist_error"] for one in boxes)
+
+
+@pytest.mark.parametrize(("tilt", "strike"), [(1, 2), (0, 4)])
+def test_the_corners_with_which_a_box_strikes_are_as_far_apart_as_its_inertia_says(tilt: int, strike: int) -> None:
+    for one in problems(partial(spatial.box, tilt=tilt, stand=0, strike=strike, bounces=False), "box", 4):
+        moments = np.linalg.eigvalsh(one.body.inertia)
+        sides = np.sqrt(6.0 / one.body.mass * (moments.sum() - 2.0 * moments))
+        apart = [float(np.linalg.norm(a - b)) for a, b in combinations(np.asarray(one.contacts.positions), 2)]
+        lengths = [*sides, *(float(np.hypot(*two)) for two in combinations(sides, 2))]
+        assert all(min(abs(length - one) for length in lengths) < 1e-9 for one in apart)
+        assert len(np.unique(np.round(apart, 9))) == (1 if strike == 2 else 3)
 
 
 @pytest.mark.parametrize("name", [scene.name for scene in spatial.SCENES])
