@@ -38,7 +38,7 @@ endif
 # One stamp for each Python and each source of ROS, so that another choice makes the environment anew.
 READY := .venv/.ready-$(ROS)-$(subst /,_,$(PYTHON))
 
-.PHONY: all compiled test test-plain demo lint types check test-extras test-install docs clean help
+.PHONY: all compiled test test-plain demo lint types check extras test-extras mutants test-install docs clean help
 
 all: $(READY) ## the environment in .venv (the default)
 
@@ -69,10 +69,15 @@ test: $(READY) ## all tests, the quick ones first; ARGS="-k rod" runs some
 test-plain: $(READY) ## the quick tests of what is compiled, as Python
 	@IMPACT_PREDICTOR_PLAIN=1 $(BIN)/python -m pytest --numprocesses 3 -m "not slow" test/mechanics test/prediction test/bags test/ros $(ARGS)
 
-test-extras: $(READY) ## what make test skips: the pages in a browser (Debian: chromium), MuJoCo, wavespectra, Pinocchio, Dask
+extras: $(READY)
 	@$(BIN)/python -m pip install --quiet --quiet --disable-pip-version-check --editable '.[$(EXTRAS),articulated,browser,fleet,robot,spectra]' \
 	  --constraint $(CONSTRAINTS)
+
+test-extras: extras ## what make test skips: the pages in a browser (Debian: chromium), MuJoCo, wavespectra, Pinocchio, Dask
 	@$(BIN)/python -m pytest -m extras $(ARGS)
+
+mutants: extras ## changes the code at 300 places, one at a time, and counts what the quick tests notice: an hour or more
+	@$(BIN)/python tools/mutate.py $(ARGS)
 
 demo: $(READY) ## tosses live on ROS topics, a crate on a deck and a robot: out/demo/demo.html
 	@$(BIN)/impact-predictor demo $(ARGS)

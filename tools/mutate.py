@@ -1,16 +1,15 @@
 r"""Change the code at random places, one at a time, and see whether the tests that run the changed line notice.
 
-    python -m pip install coverage pytest-cov
-    python -m pytest -m "not slow and not extras" --junitxml=tests.xml \
-        --cov=impact_predictor --cov-context=test --cov-report=
-    python tools/mutate.py .coverage tests.xml --count 300 --seed 1
+    make mutants ARGS="--count 300 --seed 1"
 
-Coverage does not see what numba compiles: for that do all of it in an environment without numba.
+First the quick tests run once, in a copy of the tree that tells what each of them runs; `--ran FILE` keeps that for
+another time, and arguments of pytest after -- choose other tests. Then each mutant is tried in a copy of the tree, in a
+process that is forked from one with the libraries loaded: first against a few quick tests, then against the others. The
+copies have no numba, which would compile every mutant of the law code anew.
 
 A mutant that no test notices is printed as it survives, with its place and what was changed; at the end stand the
 counts of each room. The exit status is 1 where fewer than --killed of those that change what can be seen are noticed;
-tools/mutants.md lists the others, with the reason. Each mutant is tried in a copy of the tree, in a process that is
-forked from one with the libraries loaded: first against a few quick tests, then against the others.
+tools/mutants.md lists the others, with the reason.
 """
 
 from __future__ import annotations
@@ -24,15 +23,15 @@ import re
 import resource
 import shutil
 import signal
+import subprocess
 import sys
 import tempfile
-from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections import Counter, defaultdict
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from itertools import accumulate, takewhile
 from pathlib import Path
-from typing import Any, Final, NamedTuple
-from xml.etree import ElementTree
+from typing import Final, NamedTuple
 
 ROOT: Final = Path(__file__).parents[1]
 PACKAGE: Final = ROOT / "impact_predictor"
@@ -69,12 +68,22 @@ class Mutant(NamedTuple):
         """What is changed, wherever it stands."""
         return f"{self.old} -> {self.new} in: {self.text}"
 
+    @property
+    def name(self) -> str:
+        """Of its file."""
+        return str(self.file.relative_to(PACKAGE))
+
+    @property
+    def key(self) -> str:
+        """The same wherever its line stands."""
+        return f"{self.name}: {self.change}"
+
     def __str__(self) -> str:
-        return f"{self.file.relative_to(PACKAGE)}:{self.line}: {self.change}"
+        return f"{self.name}:{self.line}: {self.change}"
 
     def is_accepted(self, accepted: str) -> bool:
         """Whether it is listed, wherever its line stands now."""
-        return f"| {self.file.relative_to(PACKAGE)} | `{self.change}` |" in accepted
+        return f"| {self.name} | `{self.change}` |" in accepted
 
 
 def mutants_of(file: Path) -> Iterator[Mutant]:
@@ -150,51 +159,105 @@ def some_of(mutants: Sequence[Mutant], count: int, seed: int) -> list[Mutant]:
     places: dict[float, Mutant] = {}
     before = Counter[str]()
     for mutant in mutants:
-        text = f"{mutant.file.relative_to(PACKAGE)} {mutant.change}"
+        text = f"{mutant.name} {mutant.change}"
         before[text] += 1
         places[random.Random(f"{seed} {text} {before[text]}").random()] = mutant
     return [places[place] for place in sorted(places)[:count]]
 
 
-def seconds_of(report: Path) -> dict[str, float]:
-    """How long each test took that passed, by its name."""
-    return {
-        f"{case.get('classname', '').replace('.', '/')}.py::{case.get('name')}": float(case.get("time", 0.0))
-        for case in ElementTree.parse(report).iter("testcase")
-        if not len(case)
-    }
+def marked(source: str, name: str, mutants: Sequence[Mutant]) -> str:
+    """The code of a file that tells, as it runs, of each function by the name of the file, and of each mutant."""
+    tree = ast.parse(source)
+    statements = [node for node in ast.walk(tree) if isinstance(node, ast.stmt)]
+    functions = [node for node in statements if isinstance(node, ast.FunctionDef)]
+    within = {id(part) for function in functions for statement in function.body for part in ast.walk(statement)}
+    marks: dict[int, list[ast.stmt]] = defaultdict(list)
+    for mutant in mutants:
+        # Of those that hold the line, the last begins within the others; decorators stand before their function.
+        inmost = max((one for one in statements if mutant.line in lines_of(one)), key=lambda one: one.lineno)
+        # What runs as the module is loaded is the same for whichever test loads it.
+        told = repr(mutant.key) if id(inmost) in within else f"{mutant.key!r}, ''"
+        marks[id(inmost)] += ast.parse(f"ran({told})").body
+    begin = next((k for k, one in enumerate(tree.body) if not is_head(one)), len(tree.body))
+    tree.body[begin:begin] = ast.parse("from ran import ran").body
+    for node in ast.walk(tree):
+        for field in ("body", "orelse", "finalbody"):
+            if isinstance(body := getattr(node, field, None), list):
+                body[:] = [one for statement in body for one in (*marks[id(statement)], statement)]
+    for function in functions:
+        function.body[:0] = ast.parse(f"ran({name!r})").body
+    return ast.unparse(ast.fix_missing_locations(tree))
 
 
-def tests_of(data: Any, seconds: Mapping[str, float], mutant: Mutant) -> dict[str, float]:
-    """The tests that run the line of a mutant and their seconds: quick ones first, of the mirrored file before others.
-
-    Where loading runs the line, they are those that run another line of its file, or else one of its folder.
-    """
-
-    def contexts_of(file: Path) -> dict[int, list[str]]:
-        found: dict[int, list[str]] = data.contexts_by_lineno(str(file))
-        return found
-
-    def run_by(contexts: Iterable[list[str]]) -> set[str]:
-        return {re.split(r"[|]| \(", context)[0] for several in contexts for context in several} & {*seconds}
-
-    contexts = contexts_of(mutant.file)
-    of_line = run_by([contexts.get(mutant.line, [])])
-    if "" in contexts.get(mutant.line, []):
-        of_line = run_by(contexts.values())
-        for file in mutant.file.parent.glob("*.py") if not of_line else ():
-            of_line |= run_by(contexts_of(file).values())
-    mirrored = f"test_{mutant.file.stem}.py"
-    tests = sorted(of_line, key=lambda test: seconds[test] * (0.1 if mirrored in test else 1.0))
-    within = takewhile(lambda total: total < LONGEST, accumulate((seconds[test] for test in tests), initial=0.0))
-    return {test: seconds[test] for test, _ in zip(tests, within)}  # noqa: B905  as many as are within
+def lines_of(statement: ast.stmt) -> range:
+    decorators: list[ast.expr] = getattr(statement, "decorator_list", [])
+    return range(min([statement.lineno, *(one.lineno for one in decorators)]), (statement.end_lineno or 0) + 1)
 
 
-def copy_tree(folder: str) -> None:
-    """Give this process a copy of the tree as its working folder."""
+def is_head(statement: ast.stmt) -> bool:
+    """Whether nothing may stand before it in a module."""
+    return isinstance(statement, ast.Expr) or getattr(statement, "module", "") == "__future__"
+
+
+class Ran(NamedTuple):
+    """What tests have told."""
+
+    seconds: dict[str, float]
+    """How long each test took that passed."""
+    tests: Mapping[str, set[str]]
+    """The tests that ran a mutant or a file; "" stands for those that load it."""
+
+    @classmethod
+    def read(cls, file: Path) -> Ran:
+        told = [line.split("\t") for line in file.read_text().splitlines()]
+        seconds = {test: float(what) for what, test in told if re.fullmatch(r"[\d.e-]+", what)}
+        tests: dict[str, set[str]] = defaultdict(set)
+        for what, test in told:
+            if test in seconds or not test:
+                tests[what].add(test)
+        return cls(seconds, tests)
+
+    def of(self, mutant: Mutant) -> dict[str, float]:
+        """The tests that run a mutant and their seconds: quick ones first, of the mirrored file before others.
+
+        Where loading runs it, they are those that run a function of its file, or else of one of its folder.
+        """
+        of_line = self.tests.get(mutant.key, set())
+        if "" in of_line:
+            of_line = of_line | self.tests.get(mutant.name, set())
+            if of_line == {""}:
+                folder = mutant.name.rpartition("/")[0]
+                of_line = {""}.union(*(them for name, them in self.tests.items() if name.rpartition("/")[0] == folder))
+        mirrored = f"test_{mutant.file.stem}.py"
+        tests = sorted(of_line - {""}, key=lambda test: self.seconds[test] * (0.1 if mirrored in test else 1.0))
+        totals = accumulate((self.seconds[test] for test in tests), initial=0.0)
+        within = takewhile(lambda total: total < LONGEST, totals)
+        return {test: self.seconds[test] for test, _ in zip(tests, within)}  # noqa: B905  as many as are within
+
+
+def run_marked(mutants: Sequence[Mutant], told: Path, choice: Sequence[str]) -> None:
+    """Run the tests in a copy of the tree that tells what runs."""
+    with tempfile.TemporaryDirectory() as folder:
+        tree = copy_tree(folder)
+        for file in sorted(PACKAGE.rglob("*.py")):
+            name = str(file.relative_to(PACKAGE))
+            text = marked(file.read_text(), name, [one for one in mutants if one.file == file])
+            (tree / PACKAGE.name / name).write_text(text)
+        environment = os.environ | {"PYTHONPATH": f"{tree}:{tree / 'tools'}", "RAN_FILE": str(told.resolve())}
+        command = [sys.executable, "-m", "pytest", "-q", "-p", "ran", "-p", "no:cacheprovider", *choice]
+        subprocess.run(command, cwd=tree, env=environment, check=False)
+
+
+def copy_tree(folder: str) -> Path:
+    """A copy of the tree for this process, without numba."""
     tree = Path(folder, str(os.getpid()))
     shutil.copytree(ROOT, tree, ignore=shutil.ignore_patterns(".git", ".venv", "out", "log"))
-    os.chdir(tree)
+    (tree / "numba.py").write_text("raise ImportError\n")
+    return tree
+
+
+def enter_copy(folder: str) -> None:
+    os.chdir(copy_tree(folder))
 
 
 def try_out(task: tuple[Mutant, dict[str, float]]) -> tuple[Mutant, str]:
@@ -240,8 +303,8 @@ def fails(tests: Sequence[str], limit: int) -> bool:
 
 def main() -> int:
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
-    parser.add_argument("coverage", type=Path, help="what coverage has recorded of the tests")
-    parser.add_argument("report", type=Path, help="how long each of them took, from --junitxml")
+    parser.add_argument("choice", nargs="*", default=["-m", "not slow"], help="of tests, as for pytest")
+    parser.add_argument("--ran", type=Path, help="what the tests told: read, or written where it is not there")
     parser.add_argument("--count", type=int, default=300)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--only", default="", help="those that have this in their line of output")
@@ -249,23 +312,25 @@ def main() -> int:
     parser.add_argument("--jobs", type=int, default=2)
     arguments = parser.parse_args()
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    every = [mutant for file in sorted(PACKAGE.rglob("*.py")) for mutant in mutants_of(file)]
+    chosen = some_of([one for one in every if arguments.only in str(one)], arguments.count, arguments.seed)
+    with tempfile.TemporaryDirectory() as folder:
+        told = arguments.ran or Path(folder, "ran")
+        if not told.exists():
+            run_marked(chosen, told, ["--numprocesses", str(arguments.jobs), *arguments.choice])
+        ran = Ran.read(told)
     import hypothesis
     import numpy as np
     import pytest
-    from coverage import CoverageData
 
     del hypothesis, np, pytest  # loaded once, for all that is forked
-    data, seconds = CoverageData(str(arguments.coverage)), seconds_of(arguments.report)
-    data.read()
     accepted = ACCEPTED.read_text() if ACCEPTED.exists() else ""
-    every = [mutant for file in sorted(PACKAGE.rglob("*.py")) for mutant in mutants_of(file)]
-    chosen = some_of([one for one in every if arguments.only in str(one)], arguments.count, arguments.seed)
     counts: dict[str, Counter[str]] = {}
     with (
         tempfile.TemporaryDirectory() as folder,
-        multiprocessing.get_context("fork").Pool(arguments.jobs, copy_tree, (folder,)) as pool,
+        multiprocessing.get_context("fork").Pool(arguments.jobs, enter_copy, (folder,)) as pool,
     ):
-        for mutant, found in pool.imap_unordered(try_out, [(one, tests_of(data, seconds, one)) for one in chosen]):
+        for mutant, found in pool.imap_unordered(try_out, [(one, ran.of(one)) for one in chosen]):
             outcome = "accepted" if found != "noticed" and mutant.is_accepted(accepted) else found
             room = mutant.file.relative_to(PACKAGE).parts[0]
             counts.setdefault(room, Counter())[outcome] += 1
