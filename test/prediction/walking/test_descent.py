@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from impact_predictor.prediction.walking.cubic import GapNoise, PointFrame
-from impact_predictor.prediction.walking.descent import Descent, DescentEstimator, LandingPrior
+from impact_predictor.prediction.walking.descent import MEMORY, STRIKE, Descent, DescentEstimator, LandingPrior
 from impact_predictor.prediction.walking.ground import GroundLevel
 from impact_predictor.prediction.walking.point_filter import PointFilter
 from impact_predictor.prediction.walking.trajectory import FootTrajectory
@@ -45,10 +45,14 @@ def test_the_part_of_announced_landings_that_came_begins_at_nine_in_ten_and_beco
 
 
 def walked(
-    speeds: np.ndarray, braking: float = 5.0, uneven: float = 0.1, noise: GapNoise = NOISE
+    speeds: np.ndarray,
+    braking: float = 5.0,
+    uneven: float = 0.1,
+    noise: GapNoise = NOISE,
+    prior: LandingPrior | None = None,
 ) -> list[list[tuple[float, Descent]]]:
     """What is told of landings with speeds, after strides that are `uneven` (s): (s until the landing, the descent)."""
-    prior, estimator, rng, told = LandingPrior(), DescentEstimator(), np.random.default_rng(0), []
+    prior, estimator, rng, told = prior or LandingPrior(), DescentEstimator(), np.random.default_rng(0), []
     lands = np.cumsum(0.5 + np.random.default_rng(2).uniform(-uneven, uneven, len(speeds)))
     for speed, land in zip(speeds.tolist(), (1e9 * lands).astype(int).tolist(), strict=True):
         course = (0.0, -speed, braking, 0.0 if speed else -60.0)
@@ -78,6 +82,14 @@ def test_strikes_that_repeat_are_told_to_strike_and_earlier_each_time() -> None:
 def test_a_foot_that_brakes_to_rest_is_told_to_do_so() -> None:
     told = walked(np.zeros(8), braking=20.0)
     assert all(one.strikes < 0.5 and one.rate == 0.0 for own in told[2:] for left, one in own if 0.01 < left < 0.03)
+
+
+def test_what_is_learnt_of_landings_is_how_fast_they_are_and_how_much_that_varies() -> None:
+    prior, speeds = LandingPrior(), np.random.default_rng(1).normal(0.6, 0.1, 40)
+    walked(speeds, noise=EXACT, prior=prior)
+    strikes, lately = prior.kinds[STRIKE], speeds[-round(MEMORY) :]
+    assert -strikes.mean[1] == pytest.approx(lately.mean(), abs=0.02)
+    assert np.sqrt(strikes.variance[1]) == pytest.approx(lately.std(), rel=0.2)
 
 
 def test_the_deviation_is_true() -> None:
