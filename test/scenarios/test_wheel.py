@@ -189,6 +189,14 @@ def test_an_impact_multiplies_the_rate_by_what_the_inertia_and_the_angle_say(ine
             assert outcome.twist.omega == pytest.approx(-1.3 * part, rel=1e-13)
 
 
+def test_a_wheel_whose_mass_and_inertia_are_a_few_times_larger_moves_the_same_and_needs_the_same_friction() -> None:
+    light = Wheel(HUB._replace(inertia=0.3), ALPHA)
+    heavy = light._replace(hub=light.hub._replace(mass=2.5, inertia=2.5 * 0.3))
+    assert steady(heavy) == pytest.approx(steady(light), rel=1e-14)
+    assert gained(heavy.hub, -0.2, 0.3) == pytest.approx(gained(light.hub, -0.2, 0.3), rel=1e-14)
+    assert least_friction(heavy) == pytest.approx(least_friction(light), rel=1e-14)
+
+
 @pytest.mark.parametrize("inertia", [1e-6, 0.1, 1.0, 5.0])
 def test_the_least_friction_of_an_impact_divides_a_foot_that_sticks_from_one_that_slips(inertia: float) -> None:
     hub = HUB._replace(inertia=inertia)
