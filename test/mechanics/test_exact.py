@@ -9,7 +9,7 @@ from exact import NB
 from exact_algebra import dot
 from golden_impacts import CASES, KINDS, body_of
 
-from impact_predictor import Contact, TwoPointBody
+from impact_predictor import Contact, TwoPointBody, solve_impact
 
 CLOSE = 2.0**-52
 """Of the terms that a contact velocity is the sum of: one rounding of the twist before and one of that after."""
@@ -64,6 +64,7 @@ def test_jams_without_end_have_the_limit_that_more_and_more_of_them_come_near(mo
     limit = exact.path(problem)
     assert limit.segments == ("O+", "OS", "-O", "SO") * 2
     assert limit.history[-1] == [0, 0, 0, 0]
+    assert solve_impact(SLIM, SLIM.turning(-0.4767)).segments == limit.segments
 
     seen = []
     monkeypatch.setattr(exact, "rest_of_jams", lambda before, after, *_: seen.append(after[0]))
