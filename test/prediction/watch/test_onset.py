@@ -15,7 +15,7 @@ from scipy.spatial.transform import Rotation
 from impact_predictor import TwoPointBody, cylinder, plate
 from impact_predictor.mechanics.motion import rock, standing
 from impact_predictor.mechanics.motion.support import MovingSupport
-from impact_predictor.prediction.watch.onset import FULL, Onset, OnsetMargins, motions
+from impact_predictor.prediction.watch.onset import FULL, Onset, OnsetMargins, first_times, motions
 from impact_predictor.prediction.watch.stance import Edge, StandingBody, edges_of, outline
 
 ROUNDING = 1e-11
@@ -258,3 +258,9 @@ def test_many_bodies_at_many_times_are_as_each_alone() -> None:
             assert together.slide[n, k] == pytest.approx(alone.slide[0], rel=ROUNDING)
             assert together.tip[n, k] == pytest.approx(alone.tip[0], rel=ROUNDING, abs=ROUNDING)
             assert together.lifted[n, k] == alone.lifted[0]
+
+
+def test_the_time_at_which_a_margin_is_used_up_is_that_of_a_line_between_two_times() -> None:
+    ratios = np.array([[1.5, 2.0, 0.0], [1.0, 1.0, 1.0], [0.5, 0.75, 1.25], [0.0, 1.0, 0.5], [0.0, 0.9, 0.5]])
+    # Used up from the start, or never.
+    assert first_times(ratios, np.array([2.0, 3.0, 5.0])).tolist() == [2.0, 2.0, 4.0, 3.0, math.inf]

@@ -7,7 +7,7 @@ from math import exp, log, pi, sqrt
 import numpy as np
 import pytest
 
-from impact_predictor.prediction.watch.peaks import ENOUGH, HOUR, KEPT, MarginPeaks, PeakLaw, law_of
+from impact_predictor.prediction.watch.peaks import ANEW, BULK, ENOUGH, HOUR, KEPT, TAIL, MarginPeaks, PeakLaw, law_of
 
 STEP = 0.25
 
@@ -64,3 +64,20 @@ def test_too_few_peaks_tell_nothing_and_no_more_are_kept_than_a_bounded_number()
     assert law.rate == pytest.approx(0.25 / 2.0, rel=0.4)
     assert law.passing(0.6) == pytest.approx(0.25 * exp(-0.5 * 3.0**2), rel=0.9)
     assert peaks.law(1) == PeakLaw()
+
+
+def test_a_law_counts_the_peaks_beyond_its_threshold_and_is_found_anew_after_some_more() -> None:
+    rng = np.random.default_rng(0)
+    for name, beyond, ones in (("rayleigh", BULK, rng.rayleigh(0.2, 200)), ("pareto", TAIL, rng.pareto(3.0, 200))):
+        law = law_of(ones, 100.0)
+        assert law.name == name
+        assert law.rate == pytest.approx((ones > np.sort(ones)[int(beyond * 200)]).sum() / 100.0)
+        assert law.passing(law.threshold) == pytest.approx(law.rate)
+    peaks, laws, found = MarginPeaks(1), [PeakLaw()], []
+    for k in range(ENOUGH + 3 * ANEW):
+        for used in (0.0, rng.uniform(0.5, 1.0)):
+            peaks.update(np.array([used]), 2.0)
+        if peaks.law(0) != laws[-1]:
+            laws.append(peaks.law(0))
+            found.append(k)
+    assert np.diff(found).tolist() == [ANEW, ANEW]
