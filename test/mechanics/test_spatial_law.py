@@ -172,6 +172,21 @@ def test_contacts_without_restitution_are_the_limit_of_little():
         assert struck(w, c, friction, 1e-3, steps=4096) == pytest.approx(plastic, abs=2e-3 * np.abs(c).max())
 
 
+def test_an_impact_that_would_gain_energy_by_newtons_restitution_keeps_all_of_it():
+    rng, told = np.random.default_rng(0), 0
+    for _ in range(100):
+        twist = rng.normal(0.0, [2.0, 2.0, 0.5, 2.0, 2.0, 2.0]) - [0.0, 0.0, 1.5, 0.0, 0.0, 0.0]
+        contacts = ContactPoints(CORNERS, rng.uniform(0.2, 1.5), 1.0)
+        outcome = solve_spatial_impact(Body(MASS, INERTIA), contacts, twist, "total")
+        if Flag.ENERGY_GAINED in outcome.flags:
+            before, after = (
+                MASS * (one[:3] @ one[:3]) + one[3:] @ INERTIA @ one[3:] for one in (twist, np.array(outcome.twist))
+            )
+            assert after == pytest.approx(before, rel=1e-12)
+            told += 1
+    assert told > 1
+
+
 def test_a_body_is_the_mechanism_of_its_mobilities():
     g = rows(CORNERS, [np.eye(3)] * 3)
     body = solve_spatial_impact(Body(MASS, INERTIA), ContactPoints(CORNERS, 0.4, 0.3), TWIST)

@@ -2,7 +2,7 @@ import pytest
 
 from impact_predictor.bags.read import BagMessage
 from impact_predictor.ros.messages import ODOMETRY, POLYGON
-from impact_predictor.ros.player import GEOMETRY_AHEAD, SHORTENED_GAP, _publish_all, timed
+from impact_predictor.ros.player import GEOMETRY_AHEAD, LONGEST_GAP, SHORTENED_GAP, _publish_all, timed
 
 SECOND = 1_000_000_000
 
@@ -17,6 +17,11 @@ def pauses(runs, *seconds):
 
 def test_messages_keep_their_pauses_and_idle_gaps_are_shortened():
     assert pauses(0, 10.0, 10.25, 10.5, 30.0, 30.25) == [0.0, 0.25, 0.25, SHORTENED_GAP, 0.25]
+
+
+def test_a_gap_that_is_shortened_is_longer_than_the_longest_pause():
+    assert pauses(1, 10.0, 10.0 + LONGEST_GAP) == [0.0, LONGEST_GAP]
+    assert pauses(1, 10.0, 10.001 + LONGEST_GAP) == [0.0]
 
 
 def test_an_excerpt_ends_where_the_last_of_its_runs_ends():
