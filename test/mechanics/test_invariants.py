@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from impact_predictor import Contact, Flag, Twist, TwoPointBody, plate, solve_impact
 from impact_predictor.mechanics.impact.batch import Outcomes
-from impact_predictor.mechanics.invariants import CLAIMED, LIMITS, violations
+from impact_predictor.mechanics.invariants import CLAIMED, LIMITS, Soak, violations
 from impact_predictor.mechanics.random_problems import KINDS, problems_of
 
 LAWS = st.sampled_from(["path", "total"])
@@ -140,3 +140,10 @@ def test_what_no_law_answers_violates_nothing():
     assert outcomes.flags & int(Flag.INVALID_INPUT)
     assert set(found) == set(LIMITS)
     assert all(value == 0.0 for value in found.values())
+
+
+def test_every_kind_has_its_turn_in_a_short_soak_too():
+    told, soak = [], Soak(2 * len(KINDS) - 1, 3, ["path"])
+    soak.run(told.append)
+    assert told == [*range(2, 2 * len(KINDS) - 1, 2), 2 * len(KINDS) - 1]
+    assert not soak.broken
