@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from math import cos, sin
+from math import cos, sin, sqrt
 
 import numpy as np
 import pytest
 
 from impact_predictor.prediction.deck.tracker import Deck
-from impact_predictor.prediction.deck.window import slope_weights
+from impact_predictor.prediction.deck.window import SLOPE, NoiseBalance, slope_weights
 from impact_predictor.prediction.monitor import Monitor
 from impact_predictor.prediction.scene import MovingDeck, Scene, Watching
 from impact_predictor.prediction.types import Imu, Sample, Vector3
@@ -161,3 +161,18 @@ def test_the_weights_of_a_slope_tell_that_of_every_parabola_at_its_end(x: list[f
 
 def test_the_weights_of_two_times_tell_the_slope_of_a_line() -> None:
     assert slope_weights([-1.0, -1.0, 1.0]) == [-0.25, -0.25, 0.5]
+
+
+def test_how_fast_what_is_found_changes_is_told_apart_from_its_noise() -> None:
+    rng, balance, span, curvature = np.random.default_rng(0), NoiseBalance(SLOPE), 1.0, 0.08
+    for k in range(4000):
+        balance.hear(k * 50_000_000, tuple(rng.normal(0.0, NOISE, 3).tolist()))
+    square = SLOPE.noise * NOISE**2 * 0.05 / span**SLOPE.power
+    times, told = np.cumsum([1.0, 1.5] * 2000), []
+    for time in times.tolist():
+        found = 0.5 * curvature * time * time + rng.normal(0.0, sqrt(square), 3)
+        balance.found(round(1e9 * time), tuple(found.tolist()), span)
+        # In a window of 10 s hardly anything but the lag errs.
+        told.append((balance.error(10.0) / (SLOPE.lag * 10.0**2)) ** 2)
+    # Noise makes second derivatives, uncorrected, as large again and half more; 6 % is what so many draws leave.
+    assert np.mean(told) == pytest.approx(curvature**2, rel=0.15)
