@@ -223,13 +223,14 @@ def sea(seconds: float, noise: float, change: float = 0.0) -> Iterator[SupportSt
 
 
 def test_the_skill_of_forecasts_is_that_of_errors_against_what_came() -> None:
-    forecast, told = WaveForecast(GRAVITY, is_felt=True), []
+    forecast, told, statuses = WaveForecast(GRAVITY, is_felt=True), [], []
     states = list(sea(400.0, 0.02))
     for k, one in enumerate(states):
         forecast.add(one)
+        statuses.append(forecast.status)
         if k > 6000 and k % 40 == 0:
             told.append((k, forecast.outlook(one.stamp)))
-    assert forecast.status is ForecastStatus.TRUSTED
+    assert [*dict.fromkeys(statuses)] == [ForecastStatus.LEARNING, ForecastStatus.TRUSTED]
     skill = forecast.skills["felt"]
     errors = []
     for k, outlook in told[:-3]:
