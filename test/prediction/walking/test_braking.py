@@ -38,3 +38,15 @@ def test_ground_that_brakes_evenly_to_rest_is_met_where_it_begins_to(lasts: floa
     met = 1e-9 * (course.stamp - 10**9) - 2.5e-3 * 32 - begins
     # As of springs, which brake ever more at first.
     assert met == pytest.approx(BOW * lasts, abs=1e-6)
+
+
+def test_ground_that_brakes_ever_less_is_met_where_its_first_braking_begins() -> None:
+    frames, gap = [], 0.1
+    rates = [-0.5] * 30 + [-0.5 * part for part in (0.65, 0.25, 0.2, 0.1, 0.05, 0.02)] + [0.0] * 15
+    for k, rate in enumerate(rates):
+        gap += 2.5e-3 * rate
+        frames.append(PointFrame(2_500_000 * k, gap, rate, (0.0, 0.0, gap), (0.0, 0.0, rate)))
+    course = braked_course(frames, 18, GapNoise(1e-5, 2e-3), 1e-3)
+    assert course is not None
+    # The line through the first two of them has the speed of before so many frames earlier.
+    assert course.stamp / 2.5e6 == pytest.approx(30.0 - 0.35 / 0.4 + BOW / 0.4)

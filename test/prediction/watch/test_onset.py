@@ -172,6 +172,12 @@ def test_a_drum_slips_along_its_axis_by_friction_on_both_edges() -> None:
     assert of_one(on_edges(body), (3.0, 0.0, -9.81)).slide[0] == pytest.approx(3.0 / (0.5 * 2.0 * 9.81))
 
 
+def test_a_drum_without_friction_slips_with_the_least_push_along_its_axis_and_rests_without_one() -> None:
+    body = on_edges(cylinder(radius=0.3, gamma=0.3, mass=40.0, friction=0.0))
+    assert of_one(body, (0.0, 0.0, -9.81)).slide[0] == 0.0
+    assert of_one(body, (1e-3, 0.0, -9.81)).slide[0] == FULL
+
+
 @pytest.mark.parametrize("felt", [(0.0, 1.0, 0.5), (0.0, 0.0, 0.0)])
 def test_what_weighs_nothing_on_the_deck_has_lifted_with_finite_ratios(felt: Any) -> None:
     found = of_one(planar(CRATE), felt)
