@@ -16,6 +16,7 @@ import pytest
 
 from impact_predictor import Contact, InputError, Mode, TwoPointBody, cylinder, plate, rod
 from impact_predictor.mechanics.motion import End, PlanarState, rock, standing
+from impact_predictor.mechanics.motion.equations import rocking_body
 from impact_predictor.mechanics.motion.support import FixedSupport
 
 GOLDEN = json.loads((Path(__file__).parent / "golden" / "motion.json").read_text())["rocking"]
@@ -286,6 +287,18 @@ def test_what_does_not_rock_is_refused() -> None:
     body = plate(1.0, 1.6, mass=1.0, friction=0.5)
     with pytest.raises(ValueError, match="law"):
         rock(body, standing(body, 0.1), law="neither")
+
+
+@pytest.mark.parametrize("turn", [-0.6, 0.0, 0.6])
+def test_a_disc_rocks_on_edges_anywhere_about_it_if_the_new_one_is_ahead(turn: float) -> None:
+    def edge(angle: float) -> Contact:
+        sine, cosine = math.sin(turn + angle), math.cos(turn + angle)
+        return Contact(0.2 * sine, -0.2 * cosine, 0.5, (-sine, cosine))
+
+    disc = rocking_body(TwoPointBody(1.0, 0.02, edge(-0.3), edge(0.4)))
+    assert disc.rolls
+    with pytest.raises(InputError, match="contact 1 ahead"):
+        rocking_body(TwoPointBody(1.0, 0.02, edge(0.4), edge(-0.3)))
 
 
 def test_an_endless_motion_ends_with_the_events_allowed() -> None:
