@@ -16,8 +16,10 @@ from impact_predictor.report.skill import (
     kind_scores,
     lift_scores,
     skill_as_json,
+    skill_tables,
     unscored,
 )
+from impact_predictor.report.table import texts_of
 from impact_predictor.report.touchdowns import TouchdownRow, row_of
 
 BEFORE = (0.0, 2.0, -1.0, 1.0, 0.0, 0.0)
@@ -59,6 +61,14 @@ def test_each_kind_has_its_touchdowns_its_errors_and_those_of_simple_answers() -
     assert [one.p50 for one in face.simple] == pytest.approx([0.7, 0.8, 0.2, 0.5, 0.4])
     assert kinds["all"].errors.p90 == pytest.approx(0.28)
     assert kind_scores([], {}) == []
+
+
+@pytest.mark.parametrize("known", [True, False])
+def test_simple_answers_have_columns_where_they_are_known(known: bool) -> None:
+    rows = ROWS if known else [row._replace(simple_errors_6d=None) for row in ROWS]
+    (_, columns, kinds), *_ = skill_tables(rows, RECORDED)
+    headers = [column.header.replace("\n", " ") for column in texts_of(columns, kinds)]
+    assert [said in headers for said in SIMPLE.values()] == [known] * len(SIMPLE)
 
 
 def test_a_lift_is_counted_as_told_and_as_measured_and_its_probability_is_judged() -> None:
