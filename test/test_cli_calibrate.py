@@ -6,6 +6,7 @@ import json
 from collections.abc import Sequence
 from math import radians
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any, NamedTuple
 
 import pytest
@@ -15,7 +16,9 @@ from impact_predictor.bags.read import read_messages
 from impact_predictor.bags.write import BagWriter
 from impact_predictor.calibration.scene_file import NewValues, changed
 from impact_predictor.cli import main
+from impact_predictor.commands.calibrate import friction_seen
 from impact_predictor.parameters.file import read_values
+from impact_predictor.prediction.watch.slips import FrictionSeen
 from impact_predictor.resources import find
 from impact_predictor.ros.messages import ODOMETRY, POLYGON
 from impact_predictor.scenarios.record import rocking_actor, write_record
@@ -190,3 +193,12 @@ def test_the_friction_of_a_crate_that_slides_on_a_deck_is_told_as_an_interval(tm
     said = run(bag, "--params", str(scene)).stdout
     assert said == f"Friction of the body, from when it held and when it slid: {held:.3f} to {slid:.3f}.\n"
     assert run(bag, "--params", str(scene), "-o", str(tmp_path / "fitted.yaml")).exit_code == 2
+
+
+def test_what_several_watches_saw_of_the_friction_of_a_body_counts_together() -> None:
+    def monitor(**seen: FrictionSeen) -> Any:
+        return SimpleNamespace(watch=SimpleNamespace(friction_seen=lambda: seen))
+
+    held, slid, nothing = FrictionSeen(held=0.2), FrictionSeen(held=0.1, slid=0.4), FrictionSeen()
+    monitors: list[Any] = [monitor(crate=held, drum=nothing), SimpleNamespace(watch=None), monitor(crate=slid)]
+    assert friction_seen(monitors) == {"crate": FrictionSeen(held=0.2, slid=0.4)}
