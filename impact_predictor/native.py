@@ -24,7 +24,9 @@ _COMPILED = {
     "mechanics.motion": (
         "engine equations events falling felt integrate phases pivot reactions slip spatial_problem stances"
     ),
-    "prediction": "checks cylinder impact motion_recorder planar points predictor recorded scatter spatial vectors",
+    "prediction": (
+        "checks course cylinder impact motion_recorder planar points predictor recorded scatter spatial vectors"
+    ),
     "prediction.deck": "frame motion window",
     "prediction.walking": (
         "announcement base braking clock cubic descent doubts feet forces ground impact landings machine point_filter "

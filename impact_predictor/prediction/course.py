@@ -41,10 +41,13 @@ STICKY: Final = 1e6
 CONVERGED: Final = 1e-4
 """m/s: changes of velocities in a sweep that end them."""
 
-Row = tuple[float, ...]
+Row = tuple[float, float, float, float, float, float, float, float, float, float]
 """A direction at a contact (3), its moment about the mass centre (3), how a unit impulse along it turns the body (3),
 and the impulse for a unit of speed.
 """
+
+Motion = tuple[float, float, float, float, float, float]
+"""The velocity of the mass centre and the angular velocity, along the axes of the world."""
 
 
 class Pose(NamedTuple):
@@ -135,20 +138,20 @@ def _pressed(
     contacts: list[tuple[list[Row], float]], friction: float, per_mass: float, linear: Vector3, spin: Vector3
 ) -> tuple[Vector3, Vector3]:
     """The velocities after plastic impulses with which no contact comes down faster than its limit."""
-    motion, impulses = [*linear, *spin], [(0.0, 0.0, 0.0)] * len(contacts)
+    motion, impulses = (*linear, *spin), [(0.0, 0.0, 0.0)] * len(contacts)
     for _ in range(SWEEPS):
         most = 0.0
         for which, ((upward, first, second), limit) in enumerate(contacts):
             press, along, across = impulses[which]
             change = max(0.0, press - upward[9] * (_speed(upward, motion) - limit)) - press
-            _push(upward, motion, change, per_mass)
+            motion = _pushed(upward, motion, change, per_mass)
             press += change
             wanted = along - first[9] * _speed(first, motion), across - second[9] * _speed(second, motion)
             drag = sqrt(wanted[0] * wanted[0] + wanted[1] * wanted[1])
             part = friction * press / drag if drag > friction * press else 1.0
             x, y = part * wanted[0], part * wanted[1]
-            _push(first, motion, x - along, per_mass)
-            _push(second, motion, y - across, per_mass)
+            motion = _pushed(first, motion, x - along, per_mass)
+            motion = _pushed(second, motion, y - across, per_mass)
             most = max(most, abs(change), abs(x - along), abs(y - across))
             impulses[which] = press, x, y
         if most * per_mass < CONVERGED:
@@ -157,18 +160,21 @@ def _pressed(
     return (vx, vy, vz), (wx, wy, wz)
 
 
-def _speed(row: Row, motion: list[float]) -> float:
+def _speed(row: Row, motion: Motion) -> float:
     dx, dy, dz, mx, my, mz, _, _, _, _ = row
     vx, vy, vz, wx, wy, wz = motion
     return vx * dx + vy * dy + vz * dz + wx * mx + wy * my + wz * mz
 
 
-def _push(row: Row, motion: list[float], impulse: float, per_mass: float) -> None:
+def _pushed(row: Row, motion: Motion, impulse: float, per_mass: float) -> Motion:
     dx, dy, dz, _, _, _, ux, uy, uz, _ = row
+    vx, vy, vz, wx, wy, wz = motion
     gain = impulse * per_mass
-    motion[0] += gain * dx
-    motion[1] += gain * dy
-    motion[2] += gain * dz
-    motion[3] += impulse * ux
-    motion[4] += impulse * uy
-    motion[5] += impulse * uz
+    return (
+        vx + gain * dx,
+        vy + gain * dy,
+        vz + gain * dz,
+        wx + impulse * ux,
+        wy + impulse * uy,
+        wz + impulse * uz,
+    )
