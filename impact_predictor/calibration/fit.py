@@ -145,6 +145,8 @@ class CoefficientSearch:
         self.solver, self.blocks, self.names, self.best = Solver(touchdowns), blocks, list(RANGES), given
         self.free: NDArray[np.bool_] = np.ones(len(self.names), bool)
         self._given, self._seed, self._tell, self._done = given, seed, tell, 0
+        self._drawn = np.array([*resamples(blocks, seed)], float)
+        """How often each touchdown counts in each resample (resamples, n)."""
         self._missed = self._slopes = np.zeros(0)
 
     def rough(self, given: Coefficients) -> Coefficients:
@@ -212,7 +214,7 @@ class CoefficientSearch:
     def estimates(self) -> dict[str, Estimate]:
         """What the touchdowns tell of each coefficient, near the best ones."""
         best = self._numbers(self.best)
-        draws = np.array([self._refitted(weights, best) for weights in resamples(self.blocks, self._seed)])
+        draws = np.array([self._refitted(weights, best) for weights in self._drawn])
         ends = np.quantile(draws, (0.5 - 0.5 * LEVEL, 0.5 + 0.5 * LEVEL), axis=0).T
         found = {}
         for k, (name, (low, high)) in enumerate(zip(self.names, ends.tolist(), strict=True)):
@@ -255,7 +257,7 @@ class CoefficientSearch:
 
     def _surely_more(self, more: Reals) -> bool:
         """Whether errors are more in the mean than others, by differences (n,), whichever blocks are drawn."""
-        means = [float(np.average(more, weights=weights)) for weights in resamples(self.blocks, self._seed)]
+        means = (self._drawn * more).sum(axis=1) / self._drawn.sum(axis=1)
         return float(np.quantile(means, 0.5 - 0.5 * LEVEL)) > ALIKE
 
     def _end(self, name: str, outside: float) -> float:
