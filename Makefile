@@ -6,7 +6,7 @@ BIN := .venv/bin
 
 export ROS_AUTOMATIC_DISCOVERY_RANGE := LOCALHOST
 export ROS_LOG_DIR ?= $(CURDIR)/log
-# Without kept bytecode each worker and each process of a test compiles all that it imports.
+# Without kept bytecode each worker and each process of a test compiles the package and its tests anew.
 unexport PYTHONDONTWRITEBYTECODE
 
 # A sourced ROS is used as it is; everywhere else ROS comes from PyPI into .venv. The two are never mixed.
