@@ -2,16 +2,18 @@
 
     python benchmarks/bench_batch.py
 
-Prints nanoseconds per impact (median of the turns) for the kinds in turn and for their mixtures, the memory that is
-needed beyond inputs and outputs, and how long a map of 1000 x 1000 takes.
+Prints nanoseconds per impact (median of the turns) for the kinds in turn and for their mixtures, by threads on all
+processors and by one, the memory that is needed beyond inputs and outputs, and how long a map of 1000 x 1000 takes.
 """
 
 from __future__ import annotations
 
+import os
 import statistics
 import sys
 import tracemalloc
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from time import perf_counter
 
 import numpy as np
@@ -19,7 +21,7 @@ from rich.console import Console
 from rich.table import Table
 
 from impact_predictor import Twist, TwoPointBody, plate, solve_impacts
-from impact_predictor.mechanics.impact.batch import numbers_of
+from impact_predictor.mechanics.impact.batch import numbers_of, processors
 from impact_predictor.mechanics.random_problems import problems_of
 
 COUNT = 1_000_000
@@ -67,6 +69,24 @@ def median_seconds(function: Callable[[], object]) -> float:
     return statistics.median(times)
 
 
+@contextmanager
+def one_processor() -> Iterator[None]:
+    """Leave the process one of its processors meanwhile, so that there is one thread."""
+    usual = os.sched_getaffinity(0)
+    os.sched_setaffinity(0, {min(usual)})
+    try:
+        yield
+    finally:
+        os.sched_setaffinity(0, usual)
+
+
+def both_medians(function: Callable[[], object]) -> tuple[float, float]:
+    """By threads on all processors, and by one."""
+    by_all = median_seconds(function)
+    with one_processor():
+        return by_all, median_seconds(function)
+
+
 def beyond_outputs(body: TwoPointBody, twist: Twist, law: str) -> float:
     """Bytes per impact at the peak, less those of the outcomes."""
     tracemalloc.start()
@@ -80,23 +100,25 @@ def main() -> None:
     """Time the kinds and their mixture, and print the tables."""
     if "numba" not in sys.modules:
         solve_impacts(*problems_of("plate", np.random.default_rng(0), 1)[1:])
-    print("compiled with numba" if "numba" in sys.modules else "plain Python: install the extra `fast` for numba")
+    fast = f"compiled with numba, {processors()} threads"
+    print(fast if "numba" in sys.modules else "plain Python: install the extra `fast` for numba")
     count = COUNT if "numba" in sys.modules else COUNT // 100
     cases = {kind: problems_of(kind, np.random.default_rng(1), count // 10)[1:] for kind in MIXTURE}
     cases[f"{', '.join(PAPER)}, shuffled, {count:,}"] = mixture(count, PAPER)
     cases[f"all of them, shuffled, {count:,}"] = mixture(count)
-    table = Table("kind", *(f"{law}: ns" for law in LAWS), title="One impact of many, median")
+    columns = (column for law in LAWS for column in (f"{law}: ns", "one thread"))
+    table = Table("kind", *columns, title="One impact of many, median")
     for name, case in cases.items():
-        nanoseconds = (median_seconds(lambda law=law, case=case: solve_impacts(*case, law)) for law in LAWS)
+        medians = (both_medians(lambda law=law, case=case: solve_impacts(*case, law)) for law in LAWS)
         size = np.broadcast(case[0].mass, case[1].omega).size
-        table.add_row(name, *(f"{1e9 * seconds / size:.0f}" for seconds in nanoseconds))
+        table.add_row(name, *(f"{1e9 * seconds / size:.0f}" for pair in medians for seconds in pair))
     Console().print(table)
     print(f"memory beyond inputs and outputs: {beyond_outputs(*mixture(count), 'path'):.2f} bytes per impact")
     heights, frictions = np.linspace(0.01, 2.0, 1000)[:, None], np.linspace(0.0, 1.5, 1000)
     body = plate(length=1.0, height=heights, mass=1.0, friction=frictions)
     for law in LAWS:
-        seconds = median_seconds(lambda law=law: solve_impacts(body, body.turning(omega=-1.0), law))
-        print(f"map of 1000 x 1000, {law} law: {seconds:.2f} s")
+        by_all, by_one = both_medians(lambda law=law: solve_impacts(body, body.turning(omega=-1.0), law))
+        print(f"map of 1000 x 1000, {law} law: {by_all:.3f} s, one thread {by_one:.3f} s")
 
 
 if __name__ == "__main__":

@@ -27,13 +27,17 @@ Function = TypeVar("Function", bound=Callable[..., object])
 
 
 def compiled(
-    make: Callable[..., Function], modules: Sequence[ModuleType], inlined: Callable[[object], bool], *given: object
+    make: Callable[..., Function],
+    modules: Sequence[ModuleType],
+    inlined: Callable[[object], bool],
+    *given: object,
+    nogil: bool = False,
 ) -> Function | None:
     """The function that `make` makes, compiled; None where numba is not installed.
 
     It may call the functions of `modules`; those that are `inlined` become a part of their callers. What was compiled
     is kept where a folder can be written, under the name that `make` is given and binds in its function: the digest of
-    the modules' text. `make` takes what else is `given`, too.
+    the modules' text. `make` takes what else is `given`, too. Of a function with `nogil` several threads run at once.
     """
     try:
         from numba import njit
@@ -47,9 +51,9 @@ def compiled(
     function = make(sha256("".join(map(getsource, modules)).encode()).hexdigest(), *given)
     # Divisions are as in C: law code never divides by zero.
     try:
-        return cast(Function, njit(function, cache=True, error_model="numpy"))
+        return cast(Function, njit(function, cache=True, error_model="numpy", nogil=nogil))
     except RuntimeError:  # no folder to keep the compiled code in
-        return cast(Function, njit(function, error_model="numpy"))
+        return cast(Function, njit(function, error_model="numpy", nogil=nogil))
 
 
 def door(

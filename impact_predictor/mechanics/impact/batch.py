@@ -1,15 +1,19 @@
 """Many impacts at once: `solve_impacts`, the law code of `solve_impact` over arrays.
 
-It is compiled where numba is installed and runs as plain Python where it is not; the answers are the same to the last
-bit.
+It is compiled where numba is installed, and then takes all processors; it runs as plain Python where numba is not. The
+answers are the same to the last bit.
 """
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from functools import cache
+from inspect import isfunction
+from math import prod
 from numbers import Real
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,6 +26,10 @@ from .solve import NOWHERE, number_of
 
 CHUNK = 2048
 """Impacts that are handed over at a time, so that the copies of broadcast fields stay small."""
+
+PART = 4 * CHUNK
+"""Impacts that a thread takes at a time: a millisecond or two, much longer than a thread takes to start. Fewer are
+solved without threads."""
 
 LAW_CODE = tuple(
     as_python(f"mechanics.{name}")
@@ -79,6 +87,8 @@ def solve_impacts(
     array; `twist` may also be one array (..., 3). `old` is None for all or for none; `validity` and `restitution` are
     one for all. Bad numbers give Flag.INVALID_INPUT in their own element; what is no number raises TypeError, an
     integer beyond all doubles OverflowError, an unknown law or rule and shapes that do not broadcast ValueError.
+
+    Compiled, many impacts are shared out among threads, one on each processor that the process may use.
     """
     number = number_of(law, restitution)
     limits = Validity(*map(float, validity))
@@ -91,15 +101,8 @@ def solve_impacts(
     given = mass, inertia, *numbers_of(old or NOWHERE), *numbers_of(new), vx, vy, omega
     # Converted here, because nditer of numpy 1.26 leaves its buffers unset where a single number is of another type.
     fields: Any = [doubles_of(field) for field in given]
-    each: Any = ["readonly", "contig"]
-    chunks = np.nditer(
-        fields,
-        flags=["buffered", "external_loop", "zerosize_ok"],
-        op_flags=[each] * len(fields),
-        order="C",
-        buffersize=CHUNK,
-    )
-    shape, count = np.broadcast_shapes(*(field.shape for field in fields)), chunks.itersize
+    shape = np.broadcast_shapes(*(field.shape for field in fields))
+    count = prod(shape)
     outcomes = Outcomes(
         mode=np.empty(count, np.uint8),
         twist=np.empty((count, 3)),
@@ -109,12 +112,36 @@ def solve_impacts(
         energy_lost=np.empty(count),
         unique=np.empty(count, np.bool_),
     )
-    fill, start = filler(), 0
-    if count:
+    fill, each = filler(), cast(Any, ["readonly", "contig", "aligned"])
+
+    def solve(start: int, most: int = PART) -> None:
+        chunks: Any = np.nditer(
+            fields,
+            flags=["buffered", "external_loop", "ranged", "delay_bufalloc"],
+            op_flags=[each] * len(fields),
+            order="C",
+            buffersize=CHUNK,
+        )
+        chunks.iterrange = start, min(start + most, count)
         for columns in chunks:
             fill(columns, old is not None, number, limits, start, outcomes)
             start += len(columns[0])
+
+    parts = range(0, count, PART)
+    threads = 1 if isfunction(fill) else min(processors(), len(parts))  # of Python's own only one runs at a time
+    if threads > 1:
+        solve(0, 1)  # compiles if nothing has yet: only the main thread can be interrupted
+        with ThreadPoolExecutor(threads) as pool:
+            list(pool.map(solve, parts))  # raises what a part has raised
+    else:
+        for start in parts:
+            solve(start)
     return Outcomes._make(field.reshape(shape + field.shape[1:]) for field in outcomes)
+
+
+def processors() -> int:
+    """How many processors this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def doubles_of(field: Any) -> NDArray[np.float64]:
@@ -122,7 +149,7 @@ def doubles_of(field: Any) -> NDArray[np.float64]:
     array = np.asarray(field)
     if array.dtype.kind not in "biuf" and (odd := [one for one in array.flat if not isinstance(one, Real)]):
         raise TypeError(f"{odd[0]!r} is no number")
-    return array.astype(np.float64)
+    return array.astype(np.float64, copy=False)
 
 
 def numbers_of(contact: Contact) -> tuple[Any, ...]:
@@ -134,7 +161,7 @@ def numbers_of(contact: Contact) -> tuple[Any, ...]:
 @cache
 def filler() -> Fill:
     """The function that solves a chunk, compiled if that can be."""
-    fill = compiled(make_fill, LAW_CODE, lambda function: function not in CALLED)
+    fill = compiled(make_fill, LAW_CODE, lambda function: function not in CALLED, nogil=True)
     if fill is None:
         plain = make_fill("")
         return lambda columns, *rest: plain(tuple(column.tolist() for column in columns), *rest)
