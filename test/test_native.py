@@ -191,6 +191,16 @@ def taken_for_none(function: ast.FunctionDef) -> bool:
     return False
 
 
+LAW_CODE = [name for name in native.MODULES if ".mechanics.impact." in name]
+
+
+@pytest.mark.parametrize("name", LAW_CODE)
+def test_law_code_unpacks_to_names_for_machine_code_makes_an_object_of_what_goes_to_an_underscore(name: str) -> None:
+    tree = ast.parse(Path(native.file_of(name)).read_text())
+    targets = [node for node in ast.walk(tree) if isinstance(node, ast.Tuple) and isinstance(node.ctx, ast.Store)]
+    assert not [f"line {one.lineno}" for one in targets if "_" in [getattr(part, "id", "") for part in one.elts]]
+
+
 @pytest.mark.parametrize("name", native.MODULES)
 def test_nothing_is_compiled_that_would_mean_something_else(name: str) -> None:
     path = Path(native.file_of(name))

@@ -62,24 +62,24 @@ def follow(problem: Problem, law: int, choice: int) -> Impact:
 
 def respond(problem: Problem, law: int) -> Reaction:
     """What an impact does in contact space. Where there is none, or no law has an answer, nothing (NO_IMPACT)."""
-    _, (restitution_old, _), (cna, cta, cnb, ctb), _ = problem
+    contacts, (restitution_old, restitution), (cna, cta, cnb, ctb), zero = problem
     if cnb >= 0.0 and cna >= 0.0:
         return NO_IMPACT, NOTHING, 0, 0.0, True, law
     notes = OLD_RESTITUTION_IGNORED if restitution_old > 0.0 and cna >= 0.0 else 0
     if law != TOTAL and cna < 0.0:
         law, notes = TOTAL, notes | BOTH_STRUCK
     impact = follow(problem, law, 0)
-    na, ta, nb, tb, vna, vta, vnb, vtb, _, _, _, _, flags, choices = impact
+    na, ta, nb, tb, vna, vta, vnb, vtb, dx, dy, dq, segments, flags, choices = impact
     if flags & NO_SOLUTION:
         law, notes, problem = TOTAL, notes | LAST_RESORT, without_restitution(problem)
         impact = total_law.solve(problem, 0)
-        na, ta, nb, tb, vna, vta, vnb, vtb, _, _, _, _, flags, choices = impact
+        na, ta, nb, tb, vna, vta, vnb, vtb, dx, dy, dq, segments, flags, choices = impact
         if flags & NO_SOLUTION:
             return NO_IMPACT, NOTHING, notes - LAST_RESORT | NO_SOLUTION, 0.0, True, law
     unique = True
     if choices > 1:
         impact, unique = nearest(problem, law, impact)
-        na, ta, nb, tb, vna, vta, vnb, vtb, _, _, _, _, flags, _ = impact
+        na, ta, nb, tb, vna, vta, vnb, vtb, dx, dy, dq, segments, flags, choices = impact
 
     speed = speed_of(problem)
     work = nb * (cnb + vnb) + tb * (ctb + vtb)
@@ -107,10 +107,10 @@ def answer(
     mode, impact, notes, work, unique, law = respond(problem, law)
     if mode == NO_IMPACT:
         return unchanged(twist, notes, law)
-    na, ta, nb, tb, _, _, _, _, dx, dy, dq, segments, _, _ = impact
+    na, ta, nb, tb, vna, vta, vnb, vtb, dx, dy, dq, segments, flags, choices = impact
     after = twist_after(twist, frame, dx, dy, dq)
     energy_lost = -0.5 * mass * work
-    contacts, _, _, _ = problem
+    contacts, restitutions, before, zero = problem
     notes |= doubts(contacts, stands, nb, validity)
     na, ta, nb, tb = mass * na, mass * ta, mass * nb, mass * tb
     # Numbers too large make one of these not finite, and with it their sum.
@@ -121,9 +121,9 @@ def answer(
 
 def doubts(contacts: ContactRows, stands: bool, nb: float, validity: Validity) -> int:
     """The notes on an impact of `nb` N s per kg at the new contact for which rigid theory is too simple."""
-    slenderness, _, _, _ = validity
+    slenderness, gravity, contact_time, gravity_share = validity
     # the depths of the contacts below the mass centre, over rho
-    (_, _, _, depth_old, _), (_, _, _, _, _, depth_new, _, _), _, _, _ = contacts
+    (an, at, qa, depth_old, fa), (nx, ny, nq, tx, ty, depth_new, extra, fb), plane, minors, rounding = contacts
     thin = SQRT_3 * slenderness
     notes = 0
     if stands and -thin < depth_old < thin and -thin < depth_new < thin:
@@ -135,7 +135,7 @@ def doubts(contacts: ContactRows, stands: bool, nb: float, validity: Validity) -
 
 def is_slow(nb: float, validity: Validity) -> bool:
     """Whether gravity matters during an impact of `nb` N s per kg at the new contact (see `Validity`)."""
-    _, gravity, contact_time, gravity_share = validity
+    slenderness, gravity, contact_time, gravity_share = validity
     return gravity_share * nb < gravity * contact_time
 
 
@@ -147,13 +147,13 @@ def unchanged(twist: Twist, notes: int, law: int) -> BodyAnswer:
 
 
 def without_restitution(problem: Problem) -> Problem:
-    contacts, _, before, zero = problem
+    contacts, restitutions, before, zero = problem
     return contacts, (0.0, 0.0), before, zero
 
 
 def speed_of(problem: Problem) -> float:
     """The sum of the contact speeds before the impact."""
-    _, _, (cna, cta, cnb, ctb), _ = problem
+    contacts, restitutions, (cna, cta, cnb, ctb), zero = problem
     speed = abs(cnb) + abs(ctb)
     return speed + abs(cna) + abs(cta) if cna < inf else speed
 
@@ -164,14 +164,14 @@ def nearest(problem: Problem, law: int, first: Impact) -> tuple[Impact, bool]:
     Of several total solutions it is the one nearest to the end of the impulse path, which an impact reaches from its
     beginning; of several paths the first.
     """
-    _, _, (cna, _, _, _), _ = problem
+    contacts, restitutions, (cna, cta, cnb, ctb), zero = problem
     best, end, unique = first, first, True
     if law == TOTAL and cna >= 0.0:
         path = follow(problem, PATH, 0)
         if solved(path):
             end = path
     least = distance(first, end)
-    _, _, _, _, _, _, _, _, _, _, _, _, _, choices = first
+    na, ta, nb, tb, vna, vta, vnb, vtb, dx, dy, dq, segments, notes, choices = first
     for choice in range(1, choices):
         other = follow(problem, law, choice)
         if solved(other) and differ(problem, other, first):
@@ -183,14 +183,14 @@ def nearest(problem: Problem, law: int, first: Impact) -> tuple[Impact, bool]:
 
 def solved(impact: Impact) -> bool:
     """Whether a law has come to an end."""
-    _, _, _, _, _, _, _, _, _, _, _, _, notes, _ = impact
+    na, ta, nb, tb, vna, vta, vnb, vtb, dx, dy, dq, segments, notes, choices = impact
     return not notes & NO_SOLUTION
 
 
 def distance(one: Impact, other: Impact) -> float:
     """How differently two answers change the twist."""
-    _, _, _, _, _, _, _, _, ux, uy, uq, _, _, _ = one
-    _, _, _, _, _, _, _, _, vx, vy, vq, _, _, _ = other
+    na, ta, nb, tb, vna, vta, vnb, vtb, ux, uy, uq, segments, notes, choices = one
+    na, ta, nb, tb, vna, vta, vnb, vtb, vx, vy, vq, segments, notes, choices = other
     return abs(ux - vx) + abs(uy - vy) + abs(uq - vq)
 
 
@@ -198,9 +198,9 @@ def differ(problem: Problem, one: Impact, other: Impact) -> bool:
     """Whether two answers change the twist differently, beyond rounding; of a W, whose digits may not tell, whether the
     contact velocities differ.
     """
-    _, _, _, _, una, uta, unb, utb, ux, uy, uq, _, _, _ = one
-    _, _, _, _, vna, vta, vnb, vtb, vx, vy, vq, _, _, _ = other
-    (_, _, _, _, rounding), _, _, _ = problem
+    na, ta, nb, tb, una, uta, unb, utb, ux, uy, uq, segments, notes, choices = one
+    na, ta, nb, tb, vna, vta, vnb, vtb, vx, vy, vq, segments, notes, choices = other
+    (old, new, plane, minors, rounding), restitutions, before, zero = problem
     if rounding == ROUNDING:
         return distance(one, other) > STAYS * (abs(ux) + abs(uy) + abs(uq) + abs(vx) + abs(vy) + abs(vq))
     apart = max(abs(uta - vta), abs(unb - vnb), abs(utb - vtb))

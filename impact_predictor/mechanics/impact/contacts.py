@@ -12,7 +12,8 @@ Minors of W are products of cross products of the rows (Binet and Cauchy); writt
 of slender and squat bodies. Of a W that is given the rows follow by elimination, and what is rounding counts as zero.
 
 Law code, here and in the modules of the laws, uses + - * / sqrt abs and comparisons only, on numbers and tuples of
-fixed size, unpacked by name: it means the same number on every machine, and a compiler can take it as it is.
+fixed size: it means the same number on every machine, and a compiler can take it as it is. They are unpacked by names,
+whether or not each is used, because machine code makes an object of what goes to `_`.
 """
 
 from __future__ import annotations
@@ -142,7 +143,9 @@ def least_push(contacts: ContactRows, na: float, ta: float, nb: float, tb: float
 
     The push is the only freedom; it is measured from the impulses without any component along it.
     """
-    (_, _, _, _, fa), (_, _, _, _, _, _, _, fb), _, (lever, arm, old_lever, old_arm), rounding = contacts
+    (an, at, qa, sa, fa), (nx, ny, nq, tx, ty, tq, extra, fb), plane, (lever, arm, old_lever, old_arm), rounding = (
+        contacts
+    )
     zna, zta, znb, ztb = -old_arm, old_lever, -arm, lever
     low, high = push_interval(na, ta, zna, zta, fa)
     if low < inf:
@@ -188,7 +191,7 @@ def see(contact: Contact, twist: Twist) -> ContactView:
 
 def approach(contact: Contact, twist: Twist) -> tuple[float, float]:
     """Velocity of the body at the contact, relative to the support, along the normal and the tangent (m/s)."""
-    _, normal, tangential, _, _, _, _, _ = see(contact, twist)
+    valid, normal, tangential, zero, nx, ny, nq, tq = see(contact, twist)
     return normal, tangential
 
 
@@ -200,12 +203,12 @@ def problem_of(
     A body that does not stand on `old` gets a frictionless contact at its mass centre, which never closes.
     """
     valid, cnb, ctb, zero_b, bx, by, nb, tb = see(new, twist)
-    x, y, fb, _, eb, _ = new
+    x, y, fb, normal, eb, velocity = new
     together = False
     if stands:
         valid_a, cna, cta, zero_a, ax, ay, na, ta = see(old, twist)
         valid = valid and valid_a
-        x_old, y_old, fa, _, ea, _ = old
+        x_old, y_old, fa, normal, ea, velocity = old
         together = x_old == x and y_old == y
     else:
         cna, cta, zero_a, ax, ay, na, ta, fa, ea = inf, 0.0, 0.0, bx, by, 0.0, 0.0, 0.0, 0.0
@@ -218,7 +221,7 @@ def problem_of(
         return False, NO_PROBLEM, (0.0, 1.0, 1.0)
     contacts = planar_contacts(ax * bx + ay * by, ax * by - ay * bx, na * unit, ta * unit, nb * unit, tb * unit, fa, fb)
     if together:  # neither has a lever about the other, not even one of rounding
-        rows_old, rows_new, plane, _, rounding = contacts
+        rows_old, rows_new, plane, minors, rounding = contacts
         contacts = rows_old, rows_new, plane, (0.0, 0.0, 0.0, 0.0), rounding
     return True, (contacts, (ea, eb), (cna, cta, cnb, ctb), (zero_a, zero_a, zero_b, zero_b)), (ax, ay, rho)
 

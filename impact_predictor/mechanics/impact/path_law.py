@@ -91,7 +91,9 @@ def strike_old(contacts: ContactRows, cta: float) -> OldImpact:
 
     N_A grows while A slips to rest, which presses it into the support, and on until it leaves it.
     """
-    (an, at, qa, sa, fa), (nx, _, _, tx, _, _, _, _), _, (lever, arm, _, _), rounding = contacts
+    (an, at, qa, sa, fa), (nx, ny, nq, tx, ty, tq, extra, fb), plane, (lever, arm, old_lever, old_arm), rounding = (
+        contacts
+    )
     a = PLUS if cta > 0.0 else MINUS
     ax = -fa if cta > 0.0 else fa
     aq = qa + ax * sa
@@ -144,7 +146,7 @@ def rest_of_jams(before: Jam, after: Jam) -> tuple[float, float, float]:
 
 def rests(problem: Problem, cnb: float) -> bool:
     """Whether a normal velocity of B is rounding of the speeds before the impact."""
-    _, _, (_, cta, before, ctb), _ = problem
+    contacts, restitutions, (cna, cta, before, ctb), zero = problem
     return abs(cnb) <= REST * (abs(cta) + abs(before) + abs(ctb))
 
 
@@ -153,7 +155,7 @@ def push_is_free(problem: Problem, cnb: float) -> bool:
 
     It does some where B moves along that line, as it can while the supports part.
     """
-    (_, _, _, (lever, arm, old_lever, old_arm), _), _, _, _ = problem
+    (old, new, plane, (lever, arm, old_lever, old_arm), rounding), restitutions, before, zero = problem
     size = abs(lever) + abs(arm) + abs(old_lever) + abs(old_arm)
     return size == 0.0 or rests(problem, cnb * arm / size)
 
@@ -164,15 +166,15 @@ def solve(problem: Problem, choice: int, by_energy: bool) -> Impact:
     The restitution at B is the energetic one or Poisson's; A does not approach, so that its own has no effect. `choice`
     picks among the consistent states at the first instant that has several.
     """
-    contacts, (_, restitution), (cna, cta, cnb, ctb), (zero_na, zero_ta, zero_nb, zero_tb) = problem
-    _, (_, _, _, _, _, _, extra, _), _, _, _ = contacts
+    contacts, (restitution_old, restitution), (cna, cta, cnb, ctb), (zero_na, zero_ta, zero_nb, zero_tb) = problem
+    old, (nx, ny, nq, tx, ty, tq, extra, fb), plane, minors, rounding = contacts
     na = ta = nb = tb = dx = dy = dq = work = stored = 0.0
     target = inf
     compressing, decided = True, False
     segments, notes, choices = 0, 0, 1
     a = b = OPEN
     slip_a, slip_b = cta, ctb
-    _, pna, pta, ptb, rna, rta, rnb, rtb, ex, ey, eq = NOT_CONSISTENT
+    consistent, pna, pta, ptb, rna, rta, rnb, rtb, ex, ey, eq = NOT_CONSISTENT
     jam = NO_JAM
     for _ in range(MAX_SEGMENTS):
         if not decided:
@@ -227,7 +229,7 @@ def solve(problem: Problem, choice: int, by_energy: bool) -> Impact:
                     if by_energy:
                         stored, work = work, energetic(restitution, work)
                 continue
-            _, pna, pta, ptb, rna, rta, rnb, rtb, ex, ey, eq = rate
+            consistent, pna, pta, ptb, rna, rta, rnb, rtb, ex, ey, eq = rate
             if a >= PLUS:
                 if slip_a == 0.0:
                     slip_a = rta
@@ -331,5 +333,5 @@ def solve(problem: Problem, choice: int, by_energy: bool) -> Impact:
     else:
         notes |= NO_SOLUTION
     if notes & SHARED_FRICTION:
-        _, na, ta, nb, tb = least_push(contacts, na, ta, nb, tb)
+        held, na, ta, nb, tb = least_push(contacts, na, ta, nb, tb)
     return na, ta, nb, tb, cna, cta, cnb, ctb, dx, dy, dq, segments, notes, choices

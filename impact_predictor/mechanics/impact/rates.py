@@ -21,7 +21,7 @@ def state_alone(contacts: ContactRows, ctb: float) -> int:
     """State of B while A is open: friction stops its slip, and keeps it at rest if it can."""
     if ctb != 0.0:
         return PLUS if ctb > 0.0 else MINUS
-    _, (_, _, nq, _, _, tq, _, fb), (_, bnt, btt, _), _, _ = contacts
+    old, (nx, ny, nq, tx, ty, tq, extra, fb), (bnn, bnt, btt, size), minors, rounding = contacts
     drive, hold = bnt + nq * tq, fb * (btt + tq * tq)
     if drive > hold:
         return PLUS
@@ -30,7 +30,7 @@ def state_alone(contacts: ContactRows, ctb: float) -> int:
 
 def open_rates(contacts: ContactRows, b: int, cna: float) -> Rates:
     """Rates while A is open, with B in the state `b` that `state_alone` gives."""
-    (an, at, qa, sa, _), (nx, ny, nq, tx, ty, tq, extra, fb), (bnn, bnt, btt, new_size), _, rounding = contacts
+    (an, at, qa, sa, fa), (nx, ny, nq, tx, ty, tq, extra, fb), (bnn, bnt, btt, new_size), minors, rounding = contacts
     if b == STICK:
         hold = btt + tq * tq
         if hold > 0.0:
@@ -53,7 +53,9 @@ def open_rates(contacts: ContactRows, b: int, cna: float) -> Rates:
 
 def stick_rates(contacts: ContactRows, b: int, ctb: float) -> Rates:
     """Rates while A sticks and B slips. Where friction cannot hold A, the T_A that would do so is still given."""
-    (an, at, qa, sa, fa), (nx, ny, nq, tx, ty, tq, extra, fb), _, (lever, arm, _, _), rounding = contacts
+    (an, at, qa, sa, fa), (nx, ny, nq, tx, ty, tq, extra, fb), plane, (lever, arm, old_lever, old_arm), rounding = (
+        contacts
+    )
     # The twist turns about A: it is a multiple of nA x tA = (an sa, at qa, -an at).
     sa2, qa2, k = at * at + sa * sa, an * an + qa * qa, an * at
     size = k * k + (an * sa) * (an * sa) + (at * qa) * (at * qa)
@@ -79,7 +81,7 @@ def stick_rates(contacts: ContactRows, b: int, ctb: float) -> Rates:
 
 def slide_rates(contacts: ContactRows, a: int, b: int, cta: float, ctb: float) -> Rates:
     """Rates while both contacts slip."""
-    (an, at, qa, sa, fa), (nx, ny, nq, tx, ty, tq, extra, fb), _, _, rounding = contacts
+    (an, at, qa, sa, fa), (nx, ny, nq, tx, ty, tq, extra, fb), plane, minors, rounding = contacts
     ax = -fa if a == PLUS else fa
     aq = qa + ax * sa
     tb = -fb if b == PLUS else fb
@@ -107,7 +109,7 @@ def slide_rates(contacts: ContactRows, a: int, b: int, cta: float, ctb: float) -
 
 def slide_stick_rates(contacts: ContactRows, a: int, cta: float) -> Rates:
     """Rates while A slips and B sticks."""
-    (an, at, qa, sa, fa), (nx, ny, nq, tx, ty, tq, extra, fb), (_, bnt, btt, _), _, rounding = contacts
+    (an, at, qa, sa, fa), (nx, ny, nq, tx, ty, tq, extra, fb), (bnn, bnt, btt, size), minors, rounding = contacts
     ax = -fa if a == PLUS else fa
     aq = qa + ax * sa
     # The twist keeps c_nA and c_tB: it is a multiple of nA x tB.
@@ -139,7 +141,9 @@ def rolling_rates(contacts: ContactRows) -> Rates:
     B's friction is then free within an interval, of which the end nearest to zero is taken. Where friction cannot
     hold both, the T_A that would do so is still given.
     """
-    (an, at, qa, sa, fa), (nx, ny, nq, tx, ty, _, extra, fb), _, (lever, _, _, _), rounding = contacts
+    (an, at, qa, sa, fa), (nx, ny, nq, tx, ty, tq, extra, fb), plane, (lever, arm, old_lever, old_arm), rounding = (
+        contacts
+    )
     k = an * at
     size = k * k + (an * sa) * (an * sa) + (at * qa) * (at * qa)
     if size == 0.0:
@@ -162,7 +166,9 @@ def rolling_rates(contacts: ContactRows) -> Rates:
 
 def wedged_rates(contacts: ContactRows) -> Rates:
     """Rates while both contacts stick and lock the body: the impulses push along their line and nothing moves."""
-    (_, _, _, _, fa), (_, _, _, _, _, _, extra, fb), _, (lever, arm, old_lever, old_arm), rounding = contacts
+    (an, at, qa, sa, fa), (nx, ny, nq, tx, ty, tq, extra, fb), plane, (lever, arm, old_lever, old_arm), rounding = (
+        contacts
+    )
     if arm == 0.0:
         return NOT_CONSISTENT
     na, ta, tb = old_arm / arm, -old_lever / arm, -lever / arm
@@ -177,21 +183,21 @@ def choose(contacts: ContactRows, cna: float, cta: float, ctb: float, compressin
     unless friction can press A down all the same. Under a load that presses A it has one answer: along the impulses
     that hold A down its slip grows with T_A, so that A sticks, or slips against the T_A that would make it stick.
     """
-    (an, at, qa, sa, fa), _, _, _, rounding = contacts
+    (an, at, qa, sa, fa), new, plane, minors, rounding = contacts
     b = state_alone(contacts, ctb)
     best = open_rates(contacts, b, cna)
     if cna > 0.0:
         return 1, OPEN, b, best
     if rounding != ROUNDING or ctb == 0.0:
         return try_all(contacts, b, best, cta, ctb, compressing, choice)
-    opens, _, _, _, _, _, _, _, _, _, _ = best
+    opens, na, ta, tb, rna, rta, rnb, rtb, dx, dy, dq = best
     if opens:
         if fa * abs(qa * sa) < 1.0 + qa * qa:
             return 1, OPEN, b, best
         return try_all(contacts, b, best, cta, ctb, compressing, choice)
     if cta == 0.0:
         best = stick_rates(contacts, b, ctb)
-        consistent, _, ta, _, _, _, _, _, _, _, _ = best
+        consistent, na, ta, tb, rna, rta, rnb, rtb, dx, dy, dq = best
         a = STICK if consistent else MINUS if ta > 0.0 else PLUS
     else:
         a = PLUS if cta > 0.0 else MINUS
@@ -202,7 +208,9 @@ def choose(contacts: ContactRows, cna: float, cta: float, ctb: float, compressin
 
 def tied(contacts: ContactRows) -> bool:
     """Whether B's tangent passes through A, so that at rest both contacts stick or none does."""
-    (an, at, qa, sa, _), (_, _, _, tx, ty, tq, _, _), _, (_, arm, _, _), rounding = contacts
+    (an, at, qa, sa, fa), (nx, ny, nq, tx, ty, tq, extra, fb), plane, (lever, arm, old_lever, old_arm), rounding = (
+        contacts
+    )
     if arm == 0.0:
         return an > 0.0
     return rounding == ROUNDING and abs(arm) <= ROUNDING * (abs(sa * tx) + abs(qa * ty) + abs(tq))
@@ -214,7 +222,7 @@ def one_answer(contacts: ContactRows, cta: float) -> bool:
     On one flat floor it has at rest. Where A slips c_nA and c_tB answer N_A and T_B linearly: one answer if that 2 x 2
     matrix has positive principal minors (a P-matrix).
     """
-    (_, _, qa, sa, fa), (nx, ny, nq, tx, ty, tq, _, _), _, _, rounding = contacts
+    (an, at, qa, sa, fa), (nx, ny, nq, tx, ty, tq, extra, fb), plane, minors, rounding = contacts
     if rounding != ROUNDING:
         return False
     if cta == 0.0:
@@ -233,13 +241,13 @@ def try_all(
     Where the rows come from a W that is singular a contact may stick by more than one set of impulses; one at the
     border of the friction cone is then taken, which is a slip that does not begin, and counts as sticking.
     """
-    _, _, _, _, rounding = contacts
+    old, new, plane, minors, rounding = contacts
     given = rounding != ROUNDING
     together = cta == 0.0 and ctb == 0.0 and tied(contacts)
     single = ctb == 0.0 and one_answer(contacts, cta)
-    opens, _, _, _, _, _, _, _, _, _, _ = best
+    opens, na, ta, tb, rna, rta, rnb, rtb, dx, dy, dq = best
     if given and opens:
-        _, b, best = without_rounding(contacts, OPEN, b, best, 1.0, ctb)
+        a, b, best = without_rounding(contacts, OPEN, b, best, 1.0, ctb)
     best_a, best_b, found, seen = OPEN, b, 1 if opens else 0, 0
     first_a, last_a = (STICK, MINUS) if cta == 0.0 else (PLUS, PLUS) if cta > 0.0 else (MINUS, MINUS)
     first_b, last_b = (STICK, MINUS) if ctb == 0.0 else (PLUS, PLUS) if ctb > 0.0 else (MINUS, MINUS)
@@ -272,7 +280,7 @@ def without_rounding(
     contacts: ContactRows, a: int, b: int, rate: Rates, cta: float, ctb: float
 ) -> tuple[int, int, Rates]:
     """States and rates without the rounding of W: a slip that does not begin counts as sticking."""
-    (an, at, qa, sa, _), (nx, ny, nq, tx, ty, tq, extra, _), _, _, _ = contacts
+    (an, at, qa, sa, fa), (nx, ny, nq, tx, ty, tq, extra, fb), plane, minors, rounding = contacts
     consistent, na, ta, tb, rna, rta, rnb, rtb, dx, dy, dq = rate
     old_n, old_t = an + abs(qa), at + abs(sa)
     new_n, new_t = abs(nx) + abs(ny) + abs(nq), abs(tx) + abs(ty) + abs(tq)
@@ -297,7 +305,7 @@ def goes_on(rate: Rates, a: int, b: int, cta: float, ctb: float, compressing: bo
 
     While B expands they always end, with its impulse.
     """
-    consistent, _, _, _, _, rta, rnb, rtb, _, _, _ = rate
+    consistent, na, ta, tb, rna, rta, rnb, rtb, dx, dy, dq = rate
     if not consistent:
         return False
     return rnb > 0.0 or not compressing or (a >= PLUS and cta * rta < 0.0) or (b >= PLUS and ctb * rtb < 0.0)

@@ -33,7 +33,7 @@ NUMBERS: Final = {("path", "poisson"): PATH, ("total", "poisson"): TOTAL, ("path
 """The numbers of the laws, each with a rule of restitution; of the total law, which has its own, the rule that is the
 default."""
 
-NAMES: Final = tuple([law for law, _ in NUMBERS])
+NAMES: Final = tuple([law for law, rule in NUMBERS])
 """The names of the laws, at their numbers."""
 
 MODES: Final = tuple(Mode)
@@ -97,10 +97,11 @@ def number_of(law: str, restitution: str = "poisson") -> int:
 def alternatives(body: TwoPointBody, twist: Twist, law: int, flags: int) -> tuple[Alternative, ...]:
     """The answers that the law which answered allows as well."""
     mass, inertia, old, new = body
-    _, problem, frame = problem_of(mass, inertia, old is not None, old or NOWHERE, new, twist)
+    valid, problem, frame = problem_of(mass, inertia, old is not None, old or NOWHERE, new, twist)
     zero = STAYS * speed_of(problem)
     found = []
-    for _, _, _, _, vna, vta, vnb, vtb, dx, dy, dq, segments, _, _ in others(problem, law, flags):
+    for other in others(problem, law, flags):
+        na, ta, nb, tb, vna, vta, vnb, vtb, dx, dy, dq, segments, notes, choices = other
         after = Twist(*twist_after(twist, frame, dx, dy, dq))
         if all(map(isfinite, after)):
             mode = MODES[mode_of(zero, vna, vta, vnb, vtb)]
@@ -114,7 +115,7 @@ def others(problem: Problem, law: int, flags: int) -> list[Impact]:
         problem = without_restitution(problem)
     first = follow(problem, law, 0)
     answers = [nearest(problem, law, first)[0]]
-    _, _, _, _, _, _, _, _, _, _, _, _, _, choices = first
+    na, ta, nb, tb, vna, vta, vnb, vtb, dx, dy, dq, segments, notes, choices = first
     for choice in range(choices):
         other = follow(problem, law, choice)
         if solved(other) and all(differ(problem, other, one) for one in answers):

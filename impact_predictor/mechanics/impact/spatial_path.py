@@ -117,7 +117,7 @@ def sweep(
     not pushed faster than c_n = 0. The motion v has A^T p in it all along; it ends when no velocity changes by more
     than the tolerance.
     """
-    rows, start, friction, _, _ = system
+    rows, start, friction, restitution, gaps = system
     softness, bias, blocks, capped = springs
     r, change = len(v), 0.0
     for count in range(most):
@@ -204,7 +204,7 @@ def sweep(
 
 def velocities(system: System, v: Floats, c: Floats) -> None:
     """Contact velocities c of a motion v."""
-    rows, start, _, _, _ = system
+    rows, start, friction, restitution, gaps = system
     r = len(v)
     for j in range(len(start)):
         speed = start[j]
@@ -403,7 +403,7 @@ def finish(
     v: Floats,
 ) -> int:
     """Stop plastically what still approaches of the contacts that have closed: sweeps as those of `sweep`."""
-    softness, bias, _, capped = springs
+    softness, bias, blocks, capped = springs
     lowest = 0.0
     for i in range(n):
         bias[i] = 0.0
@@ -443,7 +443,7 @@ def solve(
     has.
     """
     m = 3 * n
-    rows, start, _, restitution, gaps = system
+    rows, start, friction, restitution, gaps = system
     r = len(v)
     before, p, blocks, other = (
         work[0:m],

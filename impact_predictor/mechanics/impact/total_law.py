@@ -51,7 +51,7 @@ NOT_POSSIBLE: Solution = (False, OPEN, OPEN, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 def new_alone(contacts: ContactRows, gna: float, gnb: float, ctb: float) -> Solution:
     """B takes all of the impulse and A opens."""
-    (an, _, qa, _, _), (nx, ny, nq, tx, ty, tq, extra, fb), (bnn, bnt, btt, size), _, rounding = contacts
+    (an, at, qa, sa, fa), (nx, ny, nq, tx, ty, tq, extra, fb), (bnn, bnt, btt, size), minors, rounding = contacts
     block, size = (bnn + extra, bnt, btt), size + extra * (btt + tq * tq)
     held, b, nb, tb, dx, dy, dq = one_alone((nx, ny, nq), (tx, ty, tq), block, size, fb, gnb, ctb, rounding)
     u, v = an * dy, qa * dq
@@ -63,7 +63,7 @@ def new_alone(contacts: ContactRows, gna: float, gnb: float, ctb: float) -> Solu
 
 def old_alone(contacts: ContactRows, gna: float, cta: float, gnb: float) -> Solution:
     """A takes all of the impulse and B opens."""
-    (an, at, qa, sa, fa), (nx, ny, nq, _, _, _, _, _), _, _, rounding = contacts
+    (an, at, qa, sa, fa), (nx, ny, nq, tx, ty, tq, extra, fb), plane, minors, rounding = contacts
     size = (an * at) * (an * at) + (an * sa) * (an * sa) + (at * qa) * (at * qa)
     block = an * an, 0.0, at * at
     held, a, na, ta, dx, dy, dq = one_alone((0.0, an, qa), (at, 0.0, sa), block, size, fa, gna, cta, rounding)
@@ -121,7 +121,7 @@ def one_alone(
 
 def both_slide(contacts: ContactRows, a: int, b: int, gna: float, cta: float, gnb: float, ctb: float) -> Solution:
     """Both contacts slip, in the directions of `a` and `b`."""
-    (an, at, qa, sa, fa), (nx, ny, nq, tx, ty, tq, extra, fb), _, _, rounding = contacts
+    (an, at, qa, sa, fa), (nx, ny, nq, tx, ty, tq, extra, fb), plane, minors, rounding = contacts
     ax = -fa if a == PLUS else fa
     aq = qa + ax * sa
     tb = -fb if b == PLUS else fb
@@ -158,7 +158,9 @@ def both_slide(contacts: ContactRows, a: int, b: int, gna: float, cta: float, gn
 
 def old_sticks(contacts: ContactRows, gna: float, cta: float, gnb: float, ctb: float) -> Solution:
     """A sticks and B slips: three contact velocities are given, so the twist is, and the impulses follow."""
-    (_, _, qa, sa, fa), (nx, ny, nq, tx, ty, tq, _, fb), _, (lever, arm, _, _), _ = contacts
+    (an, at, qa, sa, fa), (nx, ny, nq, tx, ty, tq, extra, fb), plane, (lever, arm, old_lever, old_arm), rounding = (
+        contacts
+    )
     if lever == 0.0:
         return NOT_POSSIBLE
     dq = (gnb - gna * ny - cta * nx) / lever
@@ -183,7 +185,7 @@ def old_sticks(contacts: ContactRows, gna: float, cta: float, gnb: float, ctb: f
 
 def new_sticks(contacts: ContactRows, gna: float, cta: float, gnb: float, ctb: float) -> Solution:
     """B sticks and A slips, of a planar body: as `old_sticks`, of the pair in the other order and in the frame of B."""
-    (_, _, qa, sa, fa), (nx, ny, nq, tx, _, tq, _, fb), _, _, _ = contacts
+    (an, at, qa, sa, fa), (nx, ny, nq, tx, ty, tq, extra, fb), plane, minors, rounding = contacts
     other = planar_contacts(ny, nx, nq, tq, qa, sa, fb, fa)
     held, b, a, nb, tb, na, ta, dx, dy, dq = old_sticks(other, gnb, ctb, gna, cta)
     return held, a, b, na, ta, nb, tb, tx * dx + nx * dy, tx * dy - nx * dx, dq
@@ -196,7 +198,7 @@ def both_stick(contacts: ContactRows, gna: float, cta: float, gnb: float, ctb: f
     the contacts. `zero` is the speed below which the contact velocities are rounding. With four freedoms there is one
     answer whatever the supports do.
     """
-    (an, at, qa, sa, fa), (nx, ny, nq, tx, ty, tq, extra, fb), _, minors, rounding = contacts
+    (an, at, qa, sa, fa), (nx, ny, nq, tx, ty, tq, extra, fb), plane, minors, rounding = contacts
     lever, arm, old_lever, old_arm = minors
     if lever == 0.0 and arm == 0.0:
         return NOT_POSSIBLE
@@ -241,7 +243,7 @@ def one_sticks(contacts: ContactRows, new_slips: bool, state: int, c: Velocities
     """One contact sticks and the other slips as `state` says, from W itself: what the former does to hold is taken out
     of the mobility of the latter. `c` are g_nA, c_tA, g_nB, c_tB.
     """
-    (an, at, qa, sa, fa), (nx, ny, nq, tx, ty, tq, extra, fb), (bnn, bnt, btt, _), _, rounding = contacts
+    (an, at, qa, sa, fa), (nx, ny, nq, tx, ty, tq, extra, fb), (bnn, bnt, btt, new_size), minors, rounding = contacts
     gna, cta, gnb, ctb = c
     ann, ant, att = an * an + qa * qa, qa * sa, at * at + sa * sa
     bnn, bnt, btt = bnn + nq * nq + extra, bnt + nq * tq, btt + tq * tq
@@ -288,7 +290,7 @@ def all_that_hold(contacts: ContactRows, c: Velocities, zero: float, found: Solu
     """Add the solutions while both contacts hold, by trial of all states: of any W."""
     gna, cta, gnb, ctb = c
     solution = both_stick(contacts, gna, cta, gnb, ctb, zero)
-    stick, _, _, _, _, _, _, _, _, _ = solution
+    stick, a, b, na, ta, nb, tb, dx, dy, dq = solution
     found = add(found, solution, choice)
     for number in range(8):
         state, other = PLUS + number % 2, PLUS + number // 2 % 2
@@ -296,7 +298,7 @@ def all_that_hold(contacts: ContactRows, c: Velocities, zero: float, found: Solu
             solution = one_sticks(contacts, number < 2, state, c)
         else:
             solution = both_slide(contacts, other, state, gna, cta, gnb, ctb)
-        _, a, b, _, _, _, _, _, _, _ = solution
+        held, a, b, na, ta, nb, tb, dx, dy, dq = solution
         if not (stick and a == STICK and b == STICK):  # that is `both_stick`, at the border of a cone
             found = add(found, solution, choice)
     return found
@@ -309,12 +311,14 @@ def both_hold(contacts: ContactRows, c: Velocities, zero: float, found: Solution
     that they have at each other's zero. Beyond the two, where both slips grow, friction drives the twist back, towards
     the one that it has without friction. So a solution lies on that side only.
     """
-    (_, _, qa, _, _), (nx, ny, nq, _, _, _, _, _), _, (lever, _, old_lever, _), _ = contacts
+    (an, at, qa, sa, fa), (nx, ny, nq, tx, ty, tq, extra, fb), plane, (lever, arm, old_lever, old_arm), rounding = (
+        contacts
+    )
     gna, cta, gnb, ctb = c
     x, y, q = nq - qa * ny, qa * nx, -nx
-    several, _, _ = found
+    several, first, chosen = found
     solution = both_stick(contacts, gna, cta, gnb, ctb, zero)
-    held, state, _, _, _, _, _, dx, dy, dq = solution
+    held, state, new_state, na, ta, nb, tb, dx, dy, dq = solution
     if held:
         found = add(found, solution, choice)
         if not several and one_answer(contacts, cta, ctb):
@@ -326,7 +330,7 @@ def both_hold(contacts: ContactRows, c: Velocities, zero: float, found: Solution
         least, most = inf, -inf
         if lever != 0.0:
             solution = old_sticks(contacts, gna, cta, gnb, ctb)
-            held, _, b, _, _, _, _, dx, dy, dq = solution
+            held, old_state, b, na, ta, nb, tb, dx, dy, dq = solution
             if held:
                 found = add(found, solution, choice)
                 if not several and one_answer(contacts, cta, ctb):
@@ -334,7 +338,7 @@ def both_hold(contacts: ContactRows, c: Velocities, zero: float, found: Solution
             least = most = x * dx + y * dy + q * dq
         if old_lever != 0.0:
             solution = new_sticks(contacts, gna, cta, gnb, ctb)
-            held, a, _, _, _, _, _, dx, dy, dq = solution
+            held, a, new_state, na, ta, nb, tb, dx, dy, dq = solution
             if held:
                 found = add(found, solution, choice)
                 if not several and one_answer(contacts, cta, ctb):
@@ -383,7 +387,9 @@ def one_answer(contacts: ContactRows, cta: float, ctb: float) -> bool:
     The determinants are linear in each friction, which enters with both signs. The slips c_tA and c_tB before the
     impact matter on one flat floor alone, where they stay the same if they are.
     """
-    (_, _, qa, sa, fa), (nx, ny, nq, _, _, tq, _, fb), _, (lever, arm, old_lever, old_arm), _ = contacts
+    (an, at, qa, sa, fa), (nx, ny, nq, tx, ty, tq, extra, fb), plane, (lever, arm, old_lever, old_arm), rounding = (
+        contacts
+    )
     # A contact slips and the other is open.
     if fa * abs(qa * sa) >= 1.0 + qa * qa or fb * abs(nq * tq) >= 1.0 + nq * nq:
         return False
@@ -404,7 +410,7 @@ def one_answer(contacts: ContactRows, cta: float, ctb: float) -> bool:
 def add(found: Solutions, other: Solution, choice: int) -> Solutions:
     """Count a solution that holds if it differs from the first one, and keep the one of number `choice`."""
     count, first, chosen = found
-    held, _, _, _, _, _, _, _, _, _ = other
+    held, a, b, na, ta, nb, tb, dx, dy, dq = other
     if not held or (count and same(first, other)):
         return found
     return count + 1, first if count else other, other if count <= choice else chosen
@@ -412,8 +418,8 @@ def add(found: Solutions, other: Solution, choice: int) -> Solutions:
 
 def same(one: Solution, other: Solution) -> bool:
     """Whether two solutions change the twist in the same way, up to rounding."""
-    _, _, _, _, _, _, _, ux, uy, uq = one
-    _, _, _, _, _, _, _, vx, vy, vq = other
+    held, a, b, na, ta, nb, tb, ux, uy, uq = one
+    held, a, b, na, ta, nb, tb, vx, vy, vq = other
     scale = abs(ux) + abs(uy) + abs(uq) + abs(vx) + abs(vy) + abs(vq)
     return abs(ux - vx) + abs(uy - vy) + abs(uq - vq) <= SAME_TWIST * scale
 
@@ -425,11 +431,11 @@ def solve(problem: Problem, choice: int) -> Impact:
     slip; `choice` k > 0 takes the k-th that differs from it.
     """
     contacts, (restitution_old, restitution), (cna, cta, cnb, ctb), (zero_na, zero_ta, zero_nb, zero_tb) = problem
-    (an, at, qa, sa, fa), (nx, ny, nq, tx, ty, tq, extra, _), _, _, rounding = contacts
+    (an, at, qa, sa, fa), (nx, ny, nq, tx, ty, tq, extra, fb), plane, minors, rounding = contacts
     given = rounding != ROUNDING
     gna, gnb = newton(restitution_old, cna), newton(restitution, cnb)
     solution = new_alone(contacts, gna, gnb, ctb) if gnb < 0.0 or (given and gnb == 0.0) else NOT_POSSIBLE
-    alone, _, _, _, _, _, _, _, _, _ = solution
+    alone, a, b, na, ta, nb, tb, dx, dy, dq = solution
     found = (1 if alone else 0), solution, solution
     if cna < inf and not (alone and not given and one_answer(contacts, cta, ctb)):
         # Where its own friction presses it down, A takes the impulse even if it is not struck.
@@ -440,11 +446,11 @@ def solve(problem: Problem, choice: int) -> Impact:
             found = all_that_hold(contacts, c, zero, found, choice)
         else:
             found = both_hold(contacts, c, zero, found, choice)
-        count, _, _ = found
+        count, first, chosen = found
         if not count:
             found = any_that_holds(contacts, c, found, choice)
 
-    count, _, (_, a, b, na, ta, nb, tb, dx, dy, dq) = found
+    count, first, (held, a, b, na, ta, nb, tb, dx, dy, dq) = found
     vna = cna + an * dy + qa * dq if a == OPEN else cna - gna
     vta = 0.0 if a == STICK else cta + at * dx + sa * dq
     vnb = cnb + nx * dx + ny * dy + nq * dq if b == OPEN else cnb - gnb
