@@ -5,17 +5,8 @@ from functools import partial
 
 import numpy as np
 import pytest
-from spatial_invariants import (
-    KINDS,
-    LIMITS,
-    ONE_FLOOR,
-    SETTLED,
-    broken_bounds,
-    limits_of,
-    main,
-    problems_of,
-    violations,
-)
+from spatial_invariants import LIMITS, SETTLED, broken_bounds, limits_of, main, violations
+from spatial_problems import KINDS, ONE_FLOOR, problems_of
 
 from impact_predictor import ContactPoints, solve_spatial_impact, solve_spatial_impacts
 from impact_predictor.mechanics.types import ContactState
