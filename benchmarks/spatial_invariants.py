@@ -64,9 +64,8 @@ counted of the worst kind."""
 
 UNANSWERED = int(Flag.NO_SOLUTION | Flag.INVALID_INPUT | Flag.NOT_CONVERGED)
 
-OFTEN = 19
-"""One chunk in so many is seen otherwise, too: turned, mirrored, reordered and in other units. It has no factor in
-common with the chunks of a round, so that all of them have their turn."""
+OFTEN = 20
+"""One of so many problems is seen otherwise, too: turned, mirrored, reordered and in other units."""
 
 
 def limits_of(kind: str) -> dict[str, float]:
@@ -139,12 +138,9 @@ def violations(
 def by_friction(found: dict[str, Array], friction: Array) -> dict[str, Array]:
     """What was found, with each of `SELDOM` apart for each of `FRICTIONS`."""
     told = {name: values for name, values in found.items() if name not in SELDOM}
-    above = -1.0
-    for words, most in FRICTIONS.items():
-        told |= {
-            f"{name}, {words}": found[name][(above < friction) & (friction <= most)] for name in SELDOM if name in found
-        }
-        above = most
+    number = np.searchsorted(list(FRICTIONS.values()), friction)
+    for place, words in enumerate(FRICTIONS):
+        told |= {f"{name}, {words}": found[name][number == place] for name in SELDOM}
     return told
 
 
@@ -198,11 +194,12 @@ def main() -> None:
     for number in track(range(state["done"], -(-given.problems // given.chunk)), console=Console(stderr=True)):
         kind, n = ROUND[number % len(ROUND)]
         problems = problems_of(kind, n, np.random.default_rng((given.seed, number)), given.chunk)
-        friction = problems.contacts.friction.max(1)
+        some = problems.first(-(-given.chunk // OFTEN))
         for law in laws:
             tally = state["tallies"][f"{law} {kind}"]
-            found = violations(problems, law, solve, otherwise=number % OFTEN == 0)
-            for name, values in by_friction(found, friction).items():
+            found = violations(problems, law, solve, otherwise=False)
+            found = violations(some, law, solve) | found
+            for name, values in by_friction(found, some.contacts.friction.max(1)).items():
                 count, bad, worst = tally.get(name, (0, 0, 0.0))
                 values = np.nan_to_num(values, nan=np.inf)
                 bad += int(np.count_nonzero(values > LIMITS.get(name.partition(",")[0], 0.0)))

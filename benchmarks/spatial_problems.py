@@ -31,6 +31,11 @@ class Problems(NamedTuple):
         turning = np.cross(twist[:, None, 3:], self.contacts.positions)
         return np.asarray(twist[:, None, :3] + turning - self.contacts.velocities)
 
+    def first(self, count: int) -> Problems:
+        (mass, inertia), contacts, twist = self
+        fields = (field[:count] for field in contacts[:-1])
+        return Problems(Body(mass[:count], inertia[:count]), ContactPoints(*fields), twist[:count])
+
 
 def problems_of(kind: str, n: int, source: np.random.Generator, k: int) -> Problems:
     """`k` problems of one of the `KINDS` with n contacts, of which up to three rest and the others mostly approach."""
