@@ -3,6 +3,7 @@
 import math
 import os
 import threading
+from functools import partial
 
 import numpy as np
 import pytest
@@ -38,6 +39,7 @@ def by(threads, monkeypatch, *problem):
 
     with monkeypatch.context() as patch:
         patch.setattr(batch, "processors", lambda: threads)
+        patch.setattr(batch, "FEWEST", 1)
         patch.setattr(batch, "filler", Watched)
         return solve_impacts(*problem), names
 
@@ -55,7 +57,7 @@ def test_several_threads_give_the_bits_of_one(size, law, monkeypatch):
     for threads in (2, 3, 7):
         outcomes, names = by(threads, monkeypatch, body, twist, law)
         assert bits(outcomes) == bits(alike)
-        assert len(names - {threading.get_ident()}) in (range(1, threads + 1) if size > PART else (0,))
+        assert len(names) <= threads
 
 
 def test_by_threads_each_element_has_the_answer_that_it_has_alone(monkeypatch):
@@ -129,19 +131,57 @@ def test_by_threads_a_bad_number_spoils_its_own_element_alone(monkeypatch):
     assert bits(field[others] for field in outcomes) == bits(field[others] for field in good)
 
 
-def test_what_a_thread_raises_is_raised(monkeypatch):
-    def failing():
-        def fill(columns, stands, law, validity, start, outcomes):
-            if start >= PART:
-                raise MemoryError(f"at {start}")
-
-        return type("Compiled", (), {"__call__": lambda self, *given: fill(*given)})()
-
+def replaced(monkeypatch, fill):
+    """Solve with another function than the compiled one, on a machine of two processors."""
     monkeypatch.setattr(batch, "processors", lambda: 2)
-    monkeypatch.setattr(batch, "filler", failing)
-    body = plate(length=1.0, height=np.full(3 * PART, 0.4), mass=10.0, friction=0.2)
-    with pytest.raises(MemoryError, match=f"at {PART}"):
-        solve_impacts(body, body.turning(omega=-1.0))
+    monkeypatch.setattr(batch, "filler", lambda: partial(fill))
+
+
+def bodies(count):
+    body = plate(length=1.0, height=np.full(count, 0.4), mass=10.0, friction=0.2)
+    return body, body.turning(omega=-1.0)
+
+
+def test_two_threads_solve_at_the_same_time(monkeypatch):
+    barrier, starts = threading.Barrier(2, timeout=60), []
+
+    def fill(columns, stands, law, validity, start, outcomes):
+        if len(columns[0]) > 1:  # else what is to be compiled first
+            starts.append(start)
+            barrier.wait()
+
+    replaced(monkeypatch, fill)
+    solve_impacts(*bodies(2 * batch.FEWEST))
+    assert sorted(starts) == list(range(0, 2 * batch.FEWEST, batch.CHUNK))
+
+
+def test_few_impacts_are_solved_without_threads(monkeypatch):
+    names = set()
+    replaced(monkeypatch, lambda *given: names.add(threading.get_ident()))
+    solve_impacts(*bodies(2 * batch.FEWEST - 1))
+    assert names == {threading.get_ident()}
+
+
+@pytest.mark.parametrize("failing_is_main", [False, True])
+def test_what_a_thread_raises_is_raised(failing_is_main, monkeypatch):
+    both, failed, calls = threading.Barrier(2, timeout=60), threading.Event(), []
+
+    def fill(columns, stands, law, validity, start, outcomes):
+        if len(columns[0]) == 1:
+            return
+        calls.append(start)
+        is_main = threading.get_ident() == main
+        if len(calls) <= 2:
+            both.wait()
+        if is_main == failing_is_main:
+            failed.set()
+            raise MemoryError("of one thread")
+        failed.wait(60)
+
+    main = threading.get_ident()
+    replaced(monkeypatch, fill)
+    with pytest.raises(MemoryError, match="of one thread"):
+        solve_impacts(*bodies(2 * batch.FEWEST))
 
 
 @pytest.mark.skipif(not hasattr(os, "sched_setaffinity"), reason="needs Linux")

@@ -28,8 +28,10 @@ CHUNK = 2048
 """Impacts that are handed over at a time, so that the copies of broadcast fields stay small."""
 
 PART = 4 * CHUNK
-"""Impacts that a thread takes at a time: a millisecond or two, much longer than a thread takes to start. Fewer are
-solved without threads."""
+"""Impacts that a thread takes at a time: it is done with them within two milliseconds."""
+
+FEWEST = 32768
+"""Impacts for each thread: with fewer it is not worth its start, which takes milliseconds on a busy machine."""
 
 LAW_CODE = tuple(
     as_python(f"mechanics.{name}")
@@ -127,15 +129,26 @@ def solve_impacts(
             fill(columns, old is not None, number, limits, start, outcomes)
             start += len(columns[0])
 
-    parts = range(0, count, PART)
-    threads = 1 if isfunction(fill) else min(processors(), len(parts))  # of Python's own only one runs at a time
-    if threads > 1:
-        solve(0, 1)  # compiles if nothing has yet: only the main thread can be interrupted
-        with ThreadPoolExecutor(threads) as pool:
-            list(pool.map(solve, parts))  # raises what a part has raised
-    else:
+    parts = iter(range(0, count, PART))  # one for all threads
+
+    def solve_parts() -> None:
         for start in parts:
             solve(start)
+
+    # Of Python's own threads only one runs at a time.
+    threads = 1 if isfunction(fill) else min(processors(), count // FEWEST)
+    if threads > 1:
+        solve(0, 1)  # compiles if nothing has yet: only the main thread can be interrupted
+        with ThreadPoolExecutor(threads - 1) as pool:
+            others = [pool.submit(solve_parts) for _ in range(threads - 1)]
+            try:
+                solve_parts()
+            finally:  # nothing is left to the others
+                list(parts)
+        for other in others:
+            other.result()  # raises what it has raised
+    else:
+        solve_parts()
     return Outcomes._make(field.reshape(shape + field.shape[1:]) for field in outcomes)
 
 
