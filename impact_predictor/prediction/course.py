@@ -46,7 +46,7 @@ Row = tuple[float, float, float, float, float, float, float, float, float, float
 and the impulse for a unit of speed.
 """
 
-Motion = tuple[float, float, float, float, float, float]
+FlatTwist = tuple[float, float, float, float, float, float]
 """The velocity of the mass centre and the angular velocity, along the axes of the world."""
 
 
@@ -160,14 +160,14 @@ def _pressed(
     return (vx, vy, vz), (wx, wy, wz)
 
 
-def _speed(row: Row, motion: Motion) -> float:
-    dx, dy, dz, mx, my, mz, _, _, _, _ = row
+def _speed(row: Row, motion: FlatTwist) -> float:
+    dx, dy, dz, mx, my, mz, ux, uy, uz, unit = row
     vx, vy, vz, wx, wy, wz = motion
     return vx * dx + vy * dy + vz * dz + wx * mx + wy * my + wz * mz
 
 
-def _pushed(row: Row, motion: Motion, impulse: float, per_mass: float) -> Motion:
-    dx, dy, dz, _, _, _, ux, uy, uz, _ = row
+def _pushed(row: Row, motion: FlatTwist, impulse: float, per_mass: float) -> FlatTwist:
+    dx, dy, dz, mx, my, mz, ux, uy, uz, unit = row
     vx, vy, vz, wx, wy, wz = motion
     gain = impulse * per_mass
     return (

@@ -203,12 +203,12 @@ def problem_of(
     A body that does not stand on `old` gets a frictionless contact at its mass centre, which never closes.
     """
     valid, cnb, ctb, zero_b, bx, by, nb, tb = see(new, twist)
-    x, y, fb, normal, eb, velocity = new
+    x, y, fb, _, eb, _ = new
     together = False
     if stands:
         valid_a, cna, cta, zero_a, ax, ay, na, ta = see(old, twist)
         valid = valid and valid_a
-        x_old, y_old, fa, normal, ea, velocity = old
+        x_old, y_old, fa, _, ea, _ = old
         together = x_old == x and y_old == y
     else:
         cna, cta, zero_a, ax, ay, na, ta, fa, ea = inf, 0.0, 0.0, bx, by, 0.0, 0.0, 0.0, 0.0
