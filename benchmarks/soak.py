@@ -4,8 +4,10 @@
     python benchmarks/soak.py --seconds 1800 --rate 500 --disturb 60     (a new publisher every minute)
 
 Publisher, node, listener and a bare node are four processes over real DDS. The publisher sends the recorded tosses
-over and over with stamps that go on; the listener counts the answers on ~/prediction by their stamps. The bare node
-takes the same samples and publishes them as they are, with the same executor: what its memory does is what ROS and the
+over and over with stamps that go on; the listener counts the answers on ~/prediction by their stamps. With --disturb
+the publisher is killed, and the next sends the same stamps once more, as a bag in a loop does; then it is ended, and
+the clock of the next is an hour ahead, and so on. The node refuses the first sample of each loop. The bare node takes
+the same samples and publishes them as they are, with the same executor: what its memory does is what ROS and the
 middleware do. The exit status is 1 when an answer is missing or came twice, or when the memory of the node grows by
 more than that of the bare one.
 """
@@ -15,10 +17,13 @@ from __future__ import annotations
 import argparse
 import gc
 import json
+import math
 import os
+import signal
 import struct
 import sys
 import time
+from dataclasses import astuple, dataclass
 from pathlib import Path
 from typing import Final
 
@@ -44,16 +49,50 @@ SETTLING: Final = 2.0
 """Seconds for the node's last report."""
 BETWEEN: Final = 1.0
 """Seconds in which the node finds a new publisher, which knows it long before: what is sent until then is lost."""
+LISTENERS: Final = 2
+"""The node and the bare one."""
+JUMP: Final = 3600 * 10**9
+"""Nanoseconds by which a clock jumps."""
+
+
+@dataclass(frozen=True)
+class Plan:
+    """Which samples are sent, and their stamps."""
+
+    step: int
+    """Nanoseconds between two samples."""
+    count: int
+    part: int
+    """Samples that one publisher sends."""
+
+    def stamp(self, number: int) -> int:
+        """That of a sample: the second publisher repeats those of the first, the third jumps ahead, and so on."""
+        part, rest = divmod(number, self.part)
+        return FIRST_STAMP + part // 2 * self._pair + rest * self.step
+
+    def number(self, stamp: int) -> int:
+        """The first sample with a stamp."""
+        pair, rest = divmod(stamp - FIRST_STAMP, self._pair)
+        return 2 * pair * self.part + rest // self.step
+
+    @property
+    def loops(self) -> int:
+        """How often the stamps go back."""
+        return math.ceil(self.count / self.part) // 2
+
+    @property
+    def _pair(self) -> int:
+        return self.part * self.step + JUMP
 
 
 def main() -> int:
     if sys.argv[1:2] == ["publish"]:
-        rate, seconds, disturb, count = map(float, sys.argv[2:6])
-        return run(lambda stop: publish(stop, rate, seconds, disturb, int(count)), [])
+        first, *plan = map(int, sys.argv[2:])
+        return run(lambda stop: publish(stop, Plan(*plan), first), [])
     if sys.argv[1:2] == ["pass_on"]:
         return run(lambda stop: pass_on(stop, sys.argv[2]), [])
     if sys.argv[1:2] == ["listen"]:
-        return run(lambda stop: listen(stop, int(sys.argv[2]), int(sys.argv[3])), [])
+        return run(lambda stop: listen(stop, Plan(*map(int, sys.argv[2:]))), [])
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     parser.add_argument("--seconds", type=float, default=120.0)
     parser.add_argument("--rate", type=float, default=500.0, help="samples a second")
@@ -65,9 +104,9 @@ def main() -> int:
 
 
 def soak(arguments: argparse.Namespace) -> int:
-    """Run the three processes, watch the node, and print what came of it."""
-    step = round(1e9 / arguments.rate)
+    """Run the processes, watch the node, and print what came of it."""
     count = round(arguments.seconds * arguments.rate)
+    plan = Plan(round(1e9 / arguments.rate), count, round(arguments.disturb * arguments.rate) or count)
     environment = {**ros_environment(), "PYTHONPATH": os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")])}
     environment.setdefault("AMENT_PREFIX_PATH", sys.prefix)
     ros = (
@@ -79,30 +118,31 @@ def soak(arguments: argparse.Namespace) -> int:
     )
     node = Child("node", environment, "-m", "impact_predictor.ros.node", *ros, "-p", f"body.contact_points:={POINTS}")
     bare = Child("bare node", environment, __file__, "pass_on", arguments.executor)
-    listener = Child("listener", environment, __file__, "listen", str(count), str(step))
-    plan = arguments.rate, arguments.seconds, arguments.disturb, count
-    publisher = Child("publisher", environment, __file__, "publish", *map(str, plan))
+    listener = Child("listener", environment, __file__, "listen", *map(str, astuple(plan)))
     memory: list[tuple[float, float, float]] = []
     with node, bare, listener:
         while "ready" not in listener.said():
             listener.check()
             node.check()
             time.sleep(0.05)
-        with publisher:
-            began = told = time.monotonic()
-            print("seconds      MB  bare MB  answers", flush=True)
-            while not publisher.ended:
-                time.sleep(1.0)
-                node.check()
-                now = time.monotonic()
-                bare.check()
-                memory.append((now - began, resident(node.process_id), resident(bare.process_id)))
-                if now - told >= TELL_EVERY:
-                    told = now
-                    numbers = f"{now - began:7.0f} {memory[-1][1]:7.2f} {memory[-1][2]:8.2f}"
-                    print(numbers, f"{last_word(listener):>8}", flush=True)
-            publisher.end()
-            sent = json.loads(publisher.said().splitlines()[-1])
+        began = told = time.monotonic()
+        print("seconds      MB  bare MB  answers", flush=True)
+        for number, first in enumerate(range(0, count, plan.part)):
+            with Child("publisher", environment, __file__, "publish", *map(str, (first, *astuple(plan)))) as publisher:
+                while "sent" not in publisher.said():
+                    time.sleep(1.0)
+                    for process in (node, bare, listener, publisher):
+                        process.check()
+                    now = time.monotonic()
+                    memory.append((now - began, resident(node.process_id), resident(bare.process_id)))
+                    if now - told >= TELL_EVERY:
+                        told = now
+                        numbers = f"{now - began:7.0f} {memory[-1][1]:7.2f} {memory[-1][2]:8.2f}"
+                        print(numbers, f"{last_word(listener):>8}", flush=True)
+                if arguments.disturb and number % 2 == 0:
+                    os.kill(publisher.process_id, signal.SIGKILL)
+                else:
+                    publisher.end()
         time.sleep(SETTLING)
         cpu = processor_time(node.process_id)
         node.end()
@@ -110,13 +150,13 @@ def soak(arguments: argparse.Namespace) -> int:
         listener.end()
         heard = json.loads(listener.said().splitlines()[-1])
         said = node.complained().strip()
-    return judge(arguments, memory, sent, heard, cpu, said)
+    return judge(arguments, plan, memory, heard, cpu, said)
 
 
 def judge(
     arguments: argparse.Namespace,
+    plan: Plan,
     memory: list[tuple[float, float, float]],
-    sent: dict[str, int],
     heard: dict[str, int],
     cpu: float,
     said: str,
@@ -124,18 +164,20 @@ def judge(
     warm = min(WARM_UP * memory[-1][0], 120.0)
     ours, bares = ([(one[0], one[part]) for one in memory if one[0] >= warm] for part in (1, 2))
     growth, of_bare = grown(ours), grown(bares)
-    lost = sent["sent"] - heard["heard"]
+    refused = heard["refused"]
+    lost = plan.count - heard["heard"] - refused
     rows = [
-        ("sent", f"{sent['sent']} samples at {arguments.rate:g} Hz, executor {arguments.executor}"),
-        ("publishers", f"{sent['publishers']}, one after the other"),
+        ("sent", f"{plan.count} samples at {arguments.rate:g} Hz, executor {arguments.executor}"),
+        ("publishers", f"{math.ceil(plan.count / plan.part)}, one after the other"),
+        ("loops", f"{plan.loops}, of which the first sample is refused"),
         ("answered", f"{heard['heard']}; {lost} missing, {heard['twice']} twice"),
         (
             "of its own",
-            f"{heard['accepted']} accepted, {heard['dropped']} dropped, {heard['lost']} lost by DDS",
+            f"{heard['accepted']} accepted, {refused} refused, {heard['dropped']} dropped, {heard['lost']} lost by DDS",
         ),
         ("memory", in_words(ours)),
         ("bare node", in_words(bares)),
-        ("processor time", f"{cpu / max(sent['sent'], 1) * 1e6:.0f} us for each sample, the start included"),
+        ("processor time", f"{cpu / max(plan.count, 1) * 1e6:.0f} us for each sample, the start included"),
         ("the node said", said or "nothing"),
     ]
     for name, text in rows:
@@ -146,39 +188,32 @@ def judge(
         "and",
         "nothing is lost" if not lost else "answers are missing",
     )
-    return int(bool(lost or heard["twice"]) or not flat)
+    return int(bool(lost or heard["twice"]) or refused != plan.loops or not flat)
 
 
-def publish(stop: Stop, rate: float, seconds: float, disturb: float, count: int) -> int:
-    """Send the samples of the tosses with stamps that go on."""
+def publish(stop: Stop, plan: Plan, first: int) -> int:
+    """Send one part of the samples, and wait for the end."""
     from rclpy.node import Node
 
     types = {topic: kind for topic, kind in topics(TOSSES).items() if kind == ODOMETRY}
     samples = [bytearray(message.data) for message in read_messages(TOSSES, types)]
     node = Node("source", use_global_arguments=False)
-    publisher, publishers = None, 0
-    stamp, step = struct.Struct("<iI"), round(1e9 / rate)
-    began = next_one = time.monotonic()
-    sent = 0
-    while sent < count and not stop.requested:
-        if publisher is None or (disturb and time.monotonic() - began > disturb * publishers):
-            if publisher is not None:
-                time.sleep(BETWEEN)
-                node.destroy_publisher(publisher)
-            publisher = node.create_publisher(message_class(ODOMETRY), "odom", 100)
-            publishers += 1
-            while not publisher.get_subscription_count() and not stop.wait(0.01):
-                pass
-            time.sleep(BETWEEN)
-            next_one = time.monotonic()
-        data = samples[sent % len(samples)]
-        stamp.pack_into(data, 4, *divmod(FIRST_STAMP + sent * step, 10**9))
-        publisher.publish(bytes(data))
-        sent += 1
-        next_one += 1.0 / rate
-        time.sleep(max(0.0, next_one - time.monotonic()))
+    publisher = node.create_publisher(message_class(ODOMETRY), "odom", 100)
+    while publisher.get_subscription_count() < LISTENERS and not stop.wait(0.01):
+        pass
     time.sleep(BETWEEN)
-    print(json.dumps({"sent": sent, "publishers": publishers}), flush=True)
+    stamp, began = struct.Struct("<iI"), time.monotonic()
+    for number in range(first, min(first + plan.part, plan.count)):
+        if stop.requested:
+            break
+        data = samples[number % len(samples)]
+        stamp.pack_into(data, 4, *divmod(plan.stamp(number), 10**9))
+        publisher.publish(bytes(data))
+        time.sleep(max(0.0, began + (number + 1 - first) * plan.step / 1e9 - time.monotonic()))
+    time.sleep(BETWEEN)
+    print("sent", flush=True)
+    while not stop.wait(1.0):
+        pass
     node.destroy_node()
     return 0
 
@@ -205,20 +240,22 @@ def pass_on(stop: Stop, executor: str) -> int:
     return 0
 
 
-def listen(stop: Stop, count: int, step: int) -> int:
+def listen(stop: Stop, plan: Plan) -> int:
     """Count the answers by their stamps, until the stop."""
     from rclpy.node import Node
     from rclpy.qos import QoSProfile
 
     node = Node("listener", use_global_arguments=False)
-    seen, stamp = bytearray(count), struct.Struct("<iI")
-    numbers = dict.fromkeys(("heard", "twice", "accepted", "dropped", "lost"), 0)
+    seen, stamp = bytearray(plan.count), struct.Struct("<iI")
+    numbers = dict.fromkeys(("heard", "twice", "accepted", "refused", "dropped", "lost"), 0)
     told = time.monotonic()
 
     def take(data: bytes) -> None:
         nonlocal told
         seconds, rest = stamp.unpack_from(data, 4)
-        number = (seconds * 10**9 + rest - FIRST_STAMP) // step
+        number = plan.number(seconds * 10**9 + rest)
+        if seen[number] and number + plan.part < plan.count:
+            number += plan.part
         numbers["twice" if seen[number] else "heard"] += 1
         seen[number] = 1
         if time.monotonic() - told > 5.0:
@@ -228,6 +265,7 @@ def listen(stop: Stop, count: int, step: int) -> int:
     def report(data: bytes) -> None:
         values = decode_diagnostic_array(data)[0].values
         numbers.update({name: int(values.get(f"samples.{name}", 0)) for name in ("accepted", "dropped", "lost")})
+        numbers["refused"] = int(values.get("refused.odom.STAMP_WENT_BACK", 0))
 
     kind = message_class(DIAGNOSTIC_ARRAY)
     node.create_subscription(kind, "/impact_predictor/prediction", take, QoSProfile(depth=QUEUE), raw=True)
