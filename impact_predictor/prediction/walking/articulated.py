@@ -118,14 +118,15 @@ class ArticulatedMachine:
             for one, (x, y, _) in zip(found.states, found.velocities.tolist(), strict=True)
         ]
         opposed = 0.0 if added is None or given <= 0.0 else float(added @ (jumps * jumps) / given)
-        return MachineOutcome(
+        impact = found._replace(
             twist=(change[:6].reshape(2, 3) @ np.array(axes)).ravel(),
             impulses=impulses @ ways,
             velocities=found.velocities @ ways,
             states=tuple(states),
-            flags=found.flags,
             energy_lost=-0.5 * float(pushed @ (start + after)),
-            law=found.law,
+        )
+        return MachineOutcome(
+            impact=impact,
             bound=drives.bound,
             jumps=tuple(jumps.tolist()),
             drives=opposed,

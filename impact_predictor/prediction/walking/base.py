@@ -75,9 +75,9 @@ class BaseMotion:
 def _line(twists: Sequence[tuple[int, tuple[float, ...]]]) -> TwistLine | None:
     if len(twists) < FEWEST or twists[-1][0] - twists[0][0] < LEAST_SPAN:
         return None
-    ages = [(stamp - twists[-1][0]) / NANOSECONDS for stamp, _ in twists]
-    each = lines(ages, [[twist[k] for _, twist in twists] for k in range(6)])
-    return tuple([now for now, _ in each]), tuple([rate for _, rate in each])
+    ages = [(stamp - twists[-1][0]) / NANOSECONDS for stamp, twist in twists]
+    each = lines(ages, zip(*[twist for stamp, twist in twists], strict=True))
+    return tuple([now for now, rate in each]), tuple([rate for now, rate in each])
 
 
 def twist_of(sample: Sample) -> tuple[float, ...]:

@@ -99,9 +99,11 @@ def touchdown_of(
     found = machine.struck(those, met, axes, scene, pulls)
     if isinstance(found, Status):
         return found
-    x, y, z, p, q, r = found.twist.tolist()
+    impact = found.impact
+    assert impact.twist is not None
+    x, y, z, p, q, r = impact.twist.tolist()
     kick, spin, center = (x, y, z), (p, q, r), to_world(axes, scene.center_of_mass)
-    told = zip(those, found.impulses.tolist(), found.velocities.tolist(), found.states, strict=True)
+    told = zip(those, impact.impulses.tolist(), impact.velocities.tolist(), impact.states, strict=True)
     contacts = tuple(
         [
             PointOutcome(i, i in landing, places[i], normal, impulse=tuple(u), velocity=tuple(v), state=state)
@@ -119,7 +121,7 @@ def touchdown_of(
     # An estimate goes on for the contact time: what rises no faster than gravity takes back in it does not lift.
     least = hardly(scene) if found.bound is Bound.ESTIMATE else LIFTS * sqrt(fastest)
     mode = mode_of_contacts(others, struck, normal, least) if strikes else Mode.NO_IMPACT
-    flags = found.flags
+    flags = impact.flags
     if strikes and is_slow(impulses[1][0] / scene.mass, scene.validity):
         flags |= Flag.SLOW_IMPACT
     if machine.is_rigid and shares_freely(contacts, normal):
@@ -136,10 +138,10 @@ def touchdown_of(
         after=planar_twist(after, ahead, normal, axis),
         impulses=impulses,
         segments=(),
-        energy_lost=found.energy_lost,
+        energy_lost=impact.energy_lost,
         flags=flags,
         unique=True,
-        law=found.law,
+        law=impact.law,
         old=old,
         new=new,
         axis=axis,

@@ -6,11 +6,9 @@ from collections.abc import Sequence
 from typing import Any, Final, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...errors import InputError
-from ...mechanics.impact.spatial import ContactPoints, solve_body
-from ...mechanics.types import ContactState, Flag
+from ...mechanics.impact.spatial import ContactPoints, SpatialOutcome, solve_body
 from ..planar import GRAZES, ORIGIN
 from ..scene import Scene, six_numbers
 from ..types import Bound, Status, Vector3
@@ -21,19 +19,13 @@ SINGULAR: Final = 1e-12  # a principal moment of inertia below this part of the 
 
 
 class MachineOutcome(NamedTuple):
-    """What an impact does to a machine: the fields of a `SpatialOutcome`, the bound that it is, and of a robot more.
+    """What an impact does to a machine, the bound that it is, and of a robot more.
 
-    `jumps` are the changes of the joint velocities (rad/s or m/s), `drives` is the part of the impulses' work that the
-    drives oppose, 0 to 1.
+    The twist of the impact is the change of that of the base, at its origin. `jumps` are the changes of the joint
+    velocities (rad/s or m/s), `drives` is the part of the impulses' work that the drives oppose, 0 to 1.
     """
 
-    twist: NDArray[np.float64]
-    impulses: NDArray[np.float64]
-    velocities: NDArray[np.float64]
-    states: tuple[ContactState, ...]
-    flags: Flag
-    energy_lost: float
-    law: str
+    impact: SpatialOutcome
     bound: Bound
     jumps: tuple[float, ...] = ()
     drives: float = 0.0
@@ -74,8 +66,8 @@ class RigidMachine:
         The `contacts`, with one normal and each with its own numbers else, are told from the base's origin, as if the
         machine were at rest and the support came with the velocities of the feet; they and the outcome are along the
         axes of the world, those of the base are `axes`.
-        The twist of the outcome is the change of that of the base, at its origin. The `scene` has normal and law. Each
-        contact gains as many m/s in a second as `pulls` have: what lasts for some time is not over before they show.
+        The `scene` has normal and law. Each contact gains as many m/s in a second as `pulls` have: what lasts for some
+        time is not over before they show.
         """
         center = to_world(axes, self._scene.center_of_mass)
         problem = [self._scene.mass, *six_numbers(tensor_to_world(axes, self._scene.inertia)), *NOTHING]
@@ -87,13 +79,4 @@ class RigidMachine:
         assert found.twist is not None
         x, y, z, p, q, r = found.twist.tolist()
         found.twist[:3] = add((x, y, z), cross((p, q, r), center), -1.0)
-        return MachineOutcome(
-            twist=found.twist,
-            impulses=found.impulses,
-            velocities=found.velocities,
-            states=found.states,
-            flags=found.flags,
-            energy_lost=found.energy_lost,
-            law=found.law,
-            bound=Bound.UPPER,
-        )
+        return MachineOutcome(impact=found, bound=Bound.UPPER)

@@ -70,8 +70,8 @@ class PointFilter:
 
     def motion(self, time: float) -> tuple[Vector3, Vector3]:
         """Position (m) and velocity (m/s) of the point `time` s after the last frame."""
-        _, (x, u, _, _), (y, v, _, _), (z, w, _, _) = (carried(row, time) for row in self.rows)
-        return (x, y, z), (u, v, w)
+        along, across, up = [carried(row, time) for row in self.rows[1:]]
+        return (along[0], across[0], up[0]), (along[1], across[1], up[1])
 
     def span(self, noise: GapNoise) -> float:
         """How long, in s, one cubic follows the gap about as well as the noise lets it be seen."""

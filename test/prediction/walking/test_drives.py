@@ -77,7 +77,7 @@ def test_armature_is_inertia_of_its_joint_whatever_the_order_in_which_it_is_told
     for made in (one, other):
         assert made.body.inertia == pytest.approx(expected, abs=1e-15)
         found = struck(made)
-        assert found.impulses[0] == pytest.approx((0.0, 0.0, 0.5 * effective_mass(made)), rel=1e-6)
+        assert found.impact.impulses[0] == pytest.approx((0.0, 0.0, 0.5 * effective_mass(made)), rel=1e-6)
         assert found.bound is Bound.ESTIMATE
 
 
@@ -86,8 +86,8 @@ def test_what_an_impact_changes_keeps_the_momentum_of_trunk_and_joints(urdf):
     scene = scene_of(friction=0.8, merge=0.005)
     found = struck(made, scene, (0, 1))
     inertia = made.body.inertia + np.diag([0.0] * 6 + [0.5 * 0.005 * 2.0] * 4)
-    change = np.concatenate([found.twist, found.jumps])
-    pushed = made.body.jacobians.reshape(6, -1).T @ found.impulses.ravel()
+    change = np.concatenate([found.impact.twist, found.jumps])
+    pushed = made.body.jacobians.reshape(6, -1).T @ found.impact.impulses.ravel()
     assert inertia @ change == pytest.approx(pushed, abs=1e-12)
 
 
@@ -101,29 +101,30 @@ def test_the_inertia_of_gains_is_the_impulse_of_a_drive_followed_step_by_step(ur
     velocity = np.minimum(times / squeezed, 1.0) if squeezed else np.ones(steps)
     position = (np.cumsum(velocity) - 0.5 * velocity) * whole / steps
     opposed = float(np.mean(kd * velocity + kp * position)) * whole
-    assert found.impulses[0][2] == pytest.approx(0.5 * effective_mass(made, opposed), rel=1e-5)
+    assert found.impact.impulses[0][2] == pytest.approx(0.5 * effective_mass(made, opposed), rel=1e-5)
     # What the drives oppose of the work: all but what turns links and rotors.
-    work = found.impulses[0][2] * 0.5
+    work = found.impact.impulses[0][2] * 0.5
     assert found.drives == pytest.approx(opposed * float(np.square(found.jumps).sum()) / work, rel=1e-5)
 
 
 def test_a_soft_contact_is_compressed_for_a_quarter_of_its_oscillation(urdf):
     made, stiffness = machine(urdf, drives="pd", kp=(200.0,), kd=(3.0,)), 5e4
     told = struck(made, scene_of(stiffness=stiffness))
-    time = 0.5 * np.pi * np.sqrt(told.impulses[0][2] / 0.5 / stiffness)
+    time = 0.5 * np.pi * np.sqrt(told.impact.impulses[0][2] / 0.5 / stiffness)
     assert time > 0.005  # longer than the contact time, so that the drives work as long
     same = struck(made, scene_of(contact_time=time, merge=time))
-    assert told.impulses[0][2] == pytest.approx(same.impulses[0][2], rel=0.01)
+    assert told.impact.impulses[0][2] == pytest.approx(same.impact.impulses[0][2], rel=0.01)
 
 
 def test_an_estimate_stops_what_the_foot_gains_while_the_contact_lasts_too(urdf):
     falls = [(0.0, 0.0, -9.81)] * 2
     made, bare, scene = machine(urdf, armature=(0.01,)), machine(urdf), scene_of(contact_time=0.01)
     gained = struck(made, scene, pulls=falls[:1])
-    assert gained.impulses[0][2] == pytest.approx((0.5 + 0.0981) * effective_mass(made), rel=1e-6)
+    assert gained.impact.impulses[0][2] == pytest.approx((0.5 + 0.0981) * effective_mass(made), rel=1e-6)
     # A foot that stands carries the weight all the while, and bounds tell of the blow alone.
-    assert struck(made, scene, (0, 1), pulls=falls).velocities[1][2] == pytest.approx(0.0, abs=1e-9)
-    assert struck(bare, scene, pulls=falls[:1]).impulses[0] == pytest.approx(struck(bare, scene).impulses[0], rel=1e-12)
+    assert struck(made, scene, (0, 1), pulls=falls).impact.velocities[1][2] == pytest.approx(0.0, abs=1e-9)
+    blow, pulled = struck(bare, scene).impact, struck(bare, scene, pulls=falls[:1]).impact
+    assert pulled.impulses[0] == pytest.approx(blow.impulses[0], rel=1e-12)
 
 
 @pytest.mark.parametrize(("slip", "state"), [(0.04, ContactState.STICKS), (0.06, ContactState.SLIPS)])
@@ -135,15 +136,15 @@ def test_an_estimate_tells_no_slip_that_is_slower_than_gravity_in_a_contact_time
         return made.struck([0], contacts, AXES, scene)
 
     # Without friction the slip after the impact is that before it and what the blow adds.
-    found = after(slip - after(0.0).velocities[0][0])
-    assert found.velocities[0] == pytest.approx((slip, 0.0, 0.0), abs=1e-12)
-    assert found.states == (state,)
+    found = after(slip - after(0.0).impact.velocities[0][0])
+    assert found.impact.velocities[0] == pytest.approx((slip, 0.0, 0.0), abs=1e-12)
+    assert found.impact.states == (state,)
 
 
 def test_what_is_known_of_the_joints_is_between_the_bounds(urdf):
     kinds = [{}, {"armature": (0.01,)}, {"armature": (0.01,), "drives": "pd", "kd": (2.0,)}, {"drives": "held"}]
     found = [struck(machine(urdf, **kind)) for kind in kinds]
-    impulses = [one.impulses[0][2] for one in found]
+    impulses = [one.impact.impulses[0][2] for one in found]
     assert impulses == sorted(impulses)
     assert impulses[0] < 0.5 * impulses[-1]
     assert [one.bound for one in found] == [Bound.LOWER, Bound.ESTIMATE, Bound.ESTIMATE, Bound.UPPER]
@@ -154,19 +155,19 @@ def test_held_joints_make_one_rigid_body(urdf):
     made = machine(urdf, drives="held")
     inertia, row = made.body.inertia[:6, :6], made.body.jacobians[0][2, :6]
     found = struck(made)
-    assert found.impulses[0][2] == pytest.approx(0.5 / (row @ np.linalg.solve(inertia, row)), rel=1e-6)
+    assert found.impact.impulses[0][2] == pytest.approx(0.5 / (row @ np.linalg.solve(inertia, row)), rel=1e-6)
 
 
 def test_a_foot_that_carries_the_weight_is_lifted_by_a_hard_blow_alone(urdf):
     made, scene = machine(urdf, armature=(0.02,)), scene_of(friction=0.8)
-    states = [struck(made, scene, (0, 1), speed).states[1] for speed in (0.2, 20.0)]
+    states = [struck(made, scene, (0, 1), speed).impact.states[1] for speed in (0.2, 20.0)]
     assert states == [ContactState.STICKS, ContactState.LEAVES]
     # What is told of it is the change of its load, and no blow is no change.
     weight = MASS * 9.81 * scene.contact_time
-    assert -weight <= struck(made, scene, (0, 1), 20.0).impulses[1][2] < 0.0
+    assert -weight <= struck(made, scene, (0, 1), 20.0).impact.impulses[1][2] < 0.0
     rest = struck(made, scene, (0, 1), 0.0)
-    assert not rest.impulses.any()
-    assert not rest.twist.any()
+    assert not rest.impact.impulses.any()
+    assert not rest.impact.twist.any()
 
 
 def test_joints_that_the_model_does_not_have_are_refused_in_one_sentence(urdf):

@@ -33,7 +33,7 @@ def struck(machine):
 
 
 def outcome(machine):
-    return [part.tolist() for part in struck(machine)[:3]]
+    return [part.tolist() for part in struck(machine).impact[:3]]
 
 
 @pytest.fixture

@@ -75,7 +75,7 @@ def test_a_machine_without_joints_is_a_trunk(tmp_path):
             )
             axes = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
             told = [*old, 1], contacts, axes, scene._replace(normal=normal)
-            one, other = RigidMachine(scene).struck(*told), machine.struck(*told)
+            one, other = RigidMachine(scene).struck(*told).impact, machine.struck(*told).impact
             assert one.states == other.states
             for field in ("twist", "impulses", "velocities"):
                 # The tangents of the two differ, and so do the last sweeps of a step.
