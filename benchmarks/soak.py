@@ -2,6 +2,7 @@
 
     python benchmarks/soak.py --seconds 1800 --rate 500
     python benchmarks/soak.py --seconds 1800 --rate 500 --disturb 60     (a new publisher every minute)
+    python benchmarks/soak.py --seconds 1800 --rate 1500 --parameter uncertainty.samples:=0     (fast: without draws)
 
 Publisher, node, listener and a bare node are four processes over real DDS. The publisher sends the recorded tosses
 over and over with stamps that go on; the listener counts the answers on ~/prediction by their stamps. With --disturb
@@ -97,6 +98,7 @@ def main() -> int:
     parser.add_argument("--seconds", type=float, default=120.0)
     parser.add_argument("--rate", type=float, default=500.0, help="samples a second")
     parser.add_argument("--executor", choices=("single", "events"), default="events")
+    parser.add_argument("--parameter", action="append", default=[], help="NAME:=VALUE for the node, besides its scene")
     parser.add_argument(
         "--disturb", type=float, default=0.0, help="seconds after which the publisher is a new one; 0: never"
     )
@@ -115,6 +117,7 @@ def soak(arguments: argparse.Namespace) -> int:
         str(ROOT / "config/cube_tosses.yaml"),
         "-p",
         f"executor:={arguments.executor}",
+        *(word for given in arguments.parameter for word in ("-p", given)),
     )
     node = Child("node", environment, "-m", "impact_predictor.ros.node", *ros, "-p", f"body.contact_points:={POINTS}")
     bare = Child("bare node", environment, __file__, "pass_on", arguments.executor)
@@ -176,7 +179,7 @@ def judge(
             f"{heard['accepted']} accepted, {refused} refused, {heard['dropped']} dropped, {heard['lost']} lost by DDS",
         ),
         ("memory", in_words(ours)),
-        ("bare node", in_words(bares)),
+        ("bare node", f"{plan.count - heard['bare']} missing; {in_words(bares)}"),
         ("processor time", f"{cpu / max(plan.count, 1) * 1e6:.0f} us for each sample, the start included"),
         ("the node said", said or "nothing"),
     ]
@@ -247,7 +250,7 @@ def listen(stop: Stop, plan: Plan) -> int:
 
     node = Node("listener", use_global_arguments=False)
     seen, stamp = bytearray(plan.count), struct.Struct("<iI")
-    numbers = dict.fromkeys(("heard", "twice", "accepted", "refused", "dropped", "lost"), 0)
+    numbers = dict.fromkeys(("heard", "twice", "bare", "accepted", "refused", "dropped", "lost"), 0)
     told = time.monotonic()
 
     def take(data: bytes) -> None:
@@ -262,6 +265,9 @@ def listen(stop: Stop, plan: Plan) -> int:
             told = time.monotonic()
             print(numbers["heard"], flush=True)
 
+    def take_bare(data: bytes) -> None:
+        numbers["bare"] += 1
+
     def report(data: bytes) -> None:
         values = decode_diagnostic_array(data)[0].values
         numbers.update({name: int(values.get(f"samples.{name}", 0)) for name in ("accepted", "dropped", "lost")})
@@ -270,7 +276,7 @@ def listen(stop: Stop, plan: Plan) -> int:
     kind = message_class(DIAGNOSTIC_ARRAY)
     node.create_subscription(kind, "/impact_predictor/prediction", take, QoSProfile(depth=QUEUE), raw=True)
     node.create_subscription(kind, "/diagnostics", report, QoSProfile(depth=QUEUE), raw=True)
-    node.create_subscription(message_class(ODOMETRY), "bare", lambda _: None, QoSProfile(depth=QUEUE), raw=True)
+    node.create_subscription(message_class(ODOMETRY), "bare", take_bare, QoSProfile(depth=QUEUE), raw=True)
 
     def look() -> None:
         if node.count_publishers("/impact_predictor/prediction"):
