@@ -26,7 +26,7 @@ REMAPPING: Final = ("-r", "/cube/odom:=/odom", "-r", "/cube/contact_geometry:=/c
 LISTED: Final = 8
 """Touchdowns that are listed."""
 
-VOYAGE: Final = "--seed", "1", "--duration", "150", "--rate", "20", "--deck-rate", "50"
+VOYAGE: Final = "--seed", "1", "--duration", "150", "--deck-rate", "50"
 """A sea that lifts the crate after two minutes, when the watch knows it."""
 
 START: Final = 30.0
