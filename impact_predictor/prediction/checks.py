@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from itertools import islice
 from math import isfinite
-from typing import Final
+from operator import index
+from typing import Any, Final
 
+from ..errors import InputError
 from .types import Quaternion, Sample, Status, Vector3
 from .vectors import dot
 
@@ -14,11 +16,21 @@ LARGEST: Final = 1e24
 """Sum of the squares of position, velocity and angular velocity beyond which no body is and products overflow."""
 
 UNIT: Final = 1e-3  # how far the square of a quaternion's length may be from 1; float32 sources stay below 1e-6
+COUNTS: Final = {
+    "position": 3, "orientation": 4, "linear": 3, "angular": 3, "pose_covariance": 36, "twist_covariance": 36
+}  # fmt: skip
+"""How many numbers the fields of a sample have."""
 COINCIDENT: Final = 1e-9  # points closer than this part of the largest coordinate are one
 
 
 def check_numbers(sample: Sample) -> Status:
-    """Whether the numbers of a sample are those of a body."""
+    """Whether the numbers of a sample are those of a body.
+
+    Raises:
+        TypeError, ValueError, IndexError: they are not told as those of a `Sample` are; `in_floats` tells them so.
+    """
+    if not isinstance(sample.stamp, int):
+        raise TypeError("the stamp is no int")
     position, linear, angular = sample.position, sample.linear, sample.angular
     size = dot(position, position) + dot(linear, linear) + dot(angular, angular)
     # False for NaN as well. A sum of finite covariances may overflow: drivers fill in the largest double.
@@ -28,6 +40,28 @@ def check_numbers(sample: Sample) -> Status:
     ):
         return Status.NOT_FINITE
     return check_orientation(sample.orientation)
+
+
+def in_floats(sample: Any) -> Sample:
+    """A sample in floats, whose numbers are told in lists or in arrays.
+
+    Raises:
+        InputError: a field is nothing of the kind.
+    """
+    told: dict[str, Any] = {}
+    for name, count in COUNTS.items():
+        value = getattr(sample, name)
+        try:
+            told[name] = tuple([float(number) for number in value])
+        except (TypeError, ValueError):
+            told[name] = ()
+        if len(told[name]) != count:
+            raise InputError(f"{name} of a sample is {value!r}; give {count} numbers")
+    try:
+        stamp = index(sample.stamp)
+    except TypeError:
+        raise InputError(f"the stamp of a sample is {sample.stamp!r}; give whole nanoseconds") from None
+    return Sample(stamp=stamp, frame_id=sample.frame_id, child_frame_id=sample.child_frame_id, **told)
 
 
 def check_orientation(orientation: Quaternion) -> Status:

@@ -10,7 +10,7 @@ from collections import deque
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, Final
 
-from .checks import PAUSE, check_numbers, order_of
+from .checks import PAUSE, check_numbers, in_floats, order_of
 from .scene import Scene
 from .types import (
     ContactInput,
@@ -184,8 +184,17 @@ class Predictor:
         return self.tree.brought(message, self.scene.frame if isinstance(message, Terrain) else self.scene.body_frame)
 
     def update(self, sample: Sample) -> Prediction:
-        """The prediction from a sample: its status, the touchdown ahead, and a score that is complete."""
-        status = check_numbers(sample)
+        """The prediction from a sample: its status, the touchdown ahead, and a score that is complete.
+
+        Raises:
+            InputError: a field of the sample has no numbers, or not as many as it has to.
+        """
+        try:
+            status = check_numbers(sample)
+        except (TypeError, ValueError, IndexError):
+            # Told by numpy's arrays, for one: what machine code refuses, and Python would calculate with.
+            sample = in_floats(sample)
+            status = check_numbers(sample)
         if status is Status.ACCEPTED and self.tree is not None:
             seen = self.tree.seen(sample, self.frames, self.scene.body_frame)
             if seen is None:

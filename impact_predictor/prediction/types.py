@@ -99,7 +99,7 @@ class Sample(NamedTuple):
     """The state of a body: pose in the world, twist in the body frame, at the body frame's origin.
 
     `stamp` in ns; `position` in m; `orientation` as (x, y, z, w); `linear` in m/s; `angular` in rad/s;
-    the covariances as 36 row-major numbers, as in nav_msgs/Odometry.
+    the covariances as 36 row-major numbers, as in nav_msgs/Odometry: zeros where nothing is known of them.
     """
 
     stamp: int
@@ -109,8 +109,8 @@ class Sample(NamedTuple):
     orientation: Quaternion
     linear: Vector3
     angular: Vector3
-    pose_covariance: tuple[float, ...]
-    twist_covariance: tuple[float, ...]
+    pose_covariance: tuple[float, ...] = (0.0,) * 36
+    twist_covariance: tuple[float, ...] = (0.0,) * 36
 
 
 class Transform(NamedTuple):

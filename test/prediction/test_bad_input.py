@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import math
+import re
 from itertools import product
 from typing import Any
 
+import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from impact_predictor.errors import InputError
 from impact_predictor.prediction.checks import PAUSE
 from impact_predictor.prediction.predictor import Predictor
 from impact_predictor.prediction.scene import Scene
@@ -62,6 +65,31 @@ def test_a_number_that_is_none_is_refused_in_any_field(field: str, count: int, b
         sample = with_bad_number(flying_sample(), field, index, bad)
         assert predictor.update(sample) == Prediction(Status.NOT_FINITE, sample)
         assert goes_on(predictor)
+
+
+@pytest.mark.parametrize("told", [list, np.array, np.float32])
+def test_a_sample_of_lists_or_arrays_is_that_of_their_numbers(told: Any) -> None:
+    sample = flying_sample(position=(0.25, 0.0, 0.125))
+    fields = ("position", "orientation", "linear", "angular", "pose_covariance", "twist_covariance")
+    numbers = {name: told(getattr(sample, name)) for name in fields}
+    other = Predictor(CUBE_SCENE).update(sample._replace(stamp=np.int64(0), **numbers))
+    assert other.touchdown is not None
+    lead_time = Predictor(CUBE_SCENE).update(sample).touchdown.lead_time
+    assert other.touchdown.lead_time == pytest.approx(lead_time, rel=1e-6 if told is np.float32 else 1e-15)
+
+
+@pytest.mark.parametrize(
+    ("changes", "sentence"),
+    [
+        ({"position": None}, "position of a sample is None; give 3 numbers"),
+        ({"linear": (0.0, 1.0)}, "linear of a sample is (0.0, 1.0); give 3 numbers"),
+        ({"twist_covariance": 0.1}, "twist_covariance of a sample is 0.1; give 36 numbers"),
+        ({"stamp": 4e9}, "the stamp of a sample is 4000000000.0; give whole nanoseconds"),
+    ],
+)
+def test_a_field_without_numbers_is_named(changes: dict[str, Any], sentence: str) -> None:
+    with pytest.raises(InputError, match=re.escape(sentence)):
+        Predictor(CUBE_SCENE).update(flying_sample(**changes))
 
 
 def test_numbers_that_no_body_has_are_refused() -> None:
