@@ -68,6 +68,16 @@ def test_an_old_contact_that_already_leaves_is_out_of_the_impact():
         assert contact_velocity(body.old, after)[0] == pytest.approx(0.0, abs=CLOSE)
 
 
+def test_an_old_contact_that_comes_back_just_as_the_compression_ends_is_pressed_from_then_on():
+    smooth = Contact(-1.0, 0.0, 0.0)
+    body = TwoPointBody(1.0, 0.5, old=smooth, new=smooth._replace(x=1.0, restitution=0.5))
+    # An impulse of 1 stops the new contact, at 3 m/s, and brings the old one back, which leaves at 1 m/s.
+    outcome = solve_impact(body, Twist(1.0, -1.0, -2.0))
+    assert [normal for normal, _ in outcome.impulses] == pytest.approx([1.0 / 6.0, 1.5], rel=CLOSE)
+    after = [contact_velocity(contact, outcome.twist)[0] for contact in (body.old, body.new)]
+    assert after == pytest.approx([0.0, 4.0 / 3.0], abs=CLOSE)
+
+
 def test_two_sticking_contacts_share_friction_with_the_least_push_between_them():
     shares = {}
     for friction in (0.9, 0.45):

@@ -39,6 +39,15 @@ def test_curves_and_bars_are_the_motion(tmp_path: Path) -> None:
     assert sorted(row for row, begin, width in bars if begin + width == pytest.approx(float(time[-1]))) == [0.0, 1.0]
 
 
+def test_the_curves_go_on_until_a_little_after_the_last_motion(tmp_path: Path) -> None:
+    rods = [release(rocking_rod(length, 0.0, 0.05, 0.05, 1.0, None, None, 0.0), radians(30.0)) for length in (0.4, 1.6)]
+    rates = drawn(tmp_path / "rods.png", rods).axes[0]
+    last = max(rod.run.time for rod in rods)
+    assert last > 2.0
+    for line in rates.lines[:2]:
+        assert last < line.get_xdata()[-1] < 1.2 * last
+
+
 def test_a_contact_that_slips_has_another_colour(tmp_path: Path) -> None:
     plate = release(rocking_plate(1.0, 1.6, None, None, 1.0, 0.05, None, 0.0), radians(10.0))
     _, _, contacts = drawn(tmp_path / "plate.svg", [plate, plate]).axes

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from math import cos, inf, pi, radians, sin, sqrt, tan
+from math import cos, inf, nan, pi, radians, sin, sqrt, tan
 
 import numpy as np
 import pytest
@@ -140,6 +140,12 @@ def test_on_the_level_it_stands_balanced_on_a_spoke_for_ever() -> None:
 def test_angles_that_do_not_go_around_are_refused_in_one_sentence(alpha: float) -> None:
     with pytest.raises(InputError, match=r"alpha is .* degrees, .*; give 180 degrees divided by a whole number"):
         roll(Wheel(HUB, alpha))
+
+
+@pytest.mark.parametrize("duration", [-1.0, 0.0, 1e5, inf, nan])
+def test_a_duration_that_is_none_or_too_long_is_refused_with_those_that_are_not(duration: float) -> None:
+    with pytest.raises(InputError, match="duration is .*; give a number of seconds between 0 and 1e5"):
+        roll(Wheel(HUB._replace(slope=0.0), ALPHA), duration=duration)
 
 
 def sloping(slope: float, inertia: float = 0.0) -> Wheel:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import random
-from math import cos, hypot, pi, sin
+from math import cos, dist, hypot, pi, sin
 from typing import Any
 
 import numpy as np
@@ -170,7 +170,9 @@ def test_points_that_are_corners_of_a_box_are_drawn_as_one(
     assert shape is not None
     assert (shape.shape, shape.position) == (CUBE, position)
     assert shape.scale == pytest.approx(scale)
-    assert len(shape.outline) == 24  # twelve edges
+    edges = {frozenset(ends) for ends in zip(shape.outline[::2], shape.outline[1::2], strict=True)}
+    lengths = sorted(dist(*edge) for edge in edges)
+    assert lengths == pytest.approx(sorted(4 * scale))  # twelve, four along each side
 
 
 def test_points_that_are_no_corners_of_a_box_are_drawn_as_lines_from_the_mass_centre() -> None:
@@ -414,6 +416,18 @@ def test_the_floor_is_below_the_bodies_and_does_not_creep_with_them() -> None:
         assert slab.pose.position.z + 0.5 * slab.scale.z == pytest.approx(0.1, abs=1e-12)
         patches.add((slab.pose.position.x, slab.scale.x))
     assert len(patches) == 1
+
+
+def test_the_grid_lies_a_little_above_the_support_however_wide_it_is() -> None:
+    """Two faces at one height flicker."""
+    for half in (1.0, 1000.0):
+        deck = MovingDeck(extent=(-half, half, -half, half))
+        scene = MarkerScene({"box": BOX._replace(deck=deck, source="none")})
+        scene.take_support(MOMENT)
+        markers = drawn(scene, SECOND)
+        slab, grid = find(markers, "support"), find(markers, "support/grid")
+        above = grid.pose.position.z - slab.pose.position.z - 0.5 * slab.scale.z
+        assert 1e-4 < above / half < 1e-2
 
 
 def test_contact_points_may_come_with_the_samples() -> None:
