@@ -232,6 +232,23 @@ def test_turning_the_scene_about_the_normal_and_mirroring_it_turns_and_mirrors_t
         assert mirrored.state.velocity == pytest.approx(mirror * found.state.velocity, abs=TWIST)
 
 
+@pytest.mark.parametrize(("friction", "angle"), [(0.3, 0.3), (0.5, 0.3), (0.5, 0.5)])
+def test_an_edge_that_is_pulled_along_itself_touches_down_alike_whichever_way_it_lies(
+    friction: float, angle: float
+) -> None:
+    tilt, found = Rotation.from_rotvec([0.0, angle, 0.0]), []
+    for turn in (Rotation.from_rotvec([0.0, 0.0, way]) for way in (0.0, 0.7, 2.0)):
+        pose, pull = turn * tilt, Pull(gravity=tuple(turn.apply([1.0, 2.0, -9.0])))
+        state = SpatialState((0.0, 0.0, -pose.apply(CUBE[4])[2]), pose.as_quat(), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+        one = fall(state, GENERAL, CUBE, (4, 6), friction, pull)
+        twist = [turn.inv().apply(part) for part in (one.state.velocity, EDGE * np.array(one.state.angular_velocity))]
+        found.append((one.point, one.time, np.concatenate(twist)))
+    for point, time, twist in found[1:]:
+        assert point == found[0][0] == 2
+        assert time == pytest.approx(found[0][1], abs=TIME)
+        assert twist == pytest.approx(found[0][2], abs=TWIST)
+
+
 def test_a_body_that_lies_on_a_face_has_no_touchdown_and_what_it_takes_is_short() -> None:
     for velocity, spin in (((0.0, 0.0, 0.0), 0.0), ((0.5, 0.2, 0.0), 2.0)):
         state = SpatialState((0.0, 0.0, 0.5 * EDGE), FLAT, velocity, (0.0, 0.0, spin))
@@ -333,6 +350,16 @@ def test_random_stances_give_finite_touchdowns_above_the_support() -> None:
             assert found.rates[found.point] < 0.0
             free = [gap for i, gap in enumerate(found.gaps) if i not in (corner, *others)]
             assert min(free) > -1e-6 * EDGE or found.time == 0.0
+
+
+def test_parts_of_one_array_to_work_with_are_apart(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Compiled law code works in one array, where Python has a list for each of its parts."""
+    start, corner = on_corner(random.Random(2), 0.5)
+    cases = [(start, GENERAL, points, (0,), 0.2) for points in ([CUBE[corner]], [CUBE[corner], CUBE[corner ^ 1]])]
+    found = [fall(*case) for case in cases]
+    monkeypatch.setattr(spatial, "solver", lambda: make_fall("", PYTHON))
+    assert [fall(*case) for case in cases] == found
+    assert found[1].point == 1
 
 
 @pytest.mark.extras
