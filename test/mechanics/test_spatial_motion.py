@@ -283,6 +283,23 @@ def test_a_body_that_is_thrown_up_from_the_support_comes_down_with_its_speed() -
     assert found.state.velocity == pytest.approx((0.0, 0.0, -1.0), abs=TWIST)
 
 
+@pytest.mark.parametrize("scale", [1e-4, 1e4])
+def test_a_body_that_is_larger_falls_as_long_as_the_root_of_its_size(scale: float) -> None:
+    draw, root = random.Random(3), math.sqrt(scale)
+    for _ in range(4):
+        start = in_flight(draw)._replace(position=(0.0, 0.0, 0.15))
+        larger = SpatialState(
+            (0.0, 0.0, 0.15 * scale),
+            start.orientation,
+            tuple(root * v for v in start.velocity),  # type: ignore[arg-type]
+            tuple(w / root for w in start.angular_velocity),  # type: ignore[arg-type]
+        )
+        one = fall(start, GENERAL, CUBE)
+        other = fall(larger, np.multiply(scale**2, GENERAL).tolist(), np.multiply(scale, CUBE).tolist(), horizon=root)
+        assert other.point == one.point >= 0
+        assert other.time / root == pytest.approx(one.time, abs=1e-12)
+
+
 def test_the_first_fall_of_a_gap_that_is_a_cubic_over_a_step_is_found_wherever_it_is() -> None:
     source, h, falls = np.random.default_rng(8), 0.1, 0
     for roots in source.uniform(-0.5, 1.5, (300, 3)):
