@@ -7,6 +7,7 @@ from dataclasses import replace
 from functools import partial
 from importlib.util import find_spec
 from itertools import combinations
+from random import Random
 from statistics import median
 
 import bench_peers
@@ -134,6 +135,14 @@ def test_an_error_is_relative_to_the_twist_before() -> None:
     strike = problems(STRIKES["paper"], "paper", 1)[0]
     doubled = Aftermath(Twist(*(2.0 * part for part in strike.twist)))
     assert impacts.errors_of(strike, doubled, Aftermath(strike.twist)) == {"twist_error": pytest.approx(1.0)}
+
+
+def test_modes_are_compared_where_both_tell_them() -> None:
+    strike = spatial.SCENES[next(iter(spatial.SCENES))](Random(1))
+    told = SpatialAftermath(strike.twist, np.array([1.0, 0.0, 0.0, 0.0]))
+    other, untold = told._replace(leaves=np.array([0.5, 0.0, 0.0, 1.0])), told._replace(leaves=None)
+    assert spatial.errors_of(strike, other, told) == {"twist_error": 0.0, "wrong_modes": 1.5 / 4}
+    assert spatial.errors_of(strike, untold, told) == spatial.errors_of(strike, told, untold) == {"twist_error": 0.0}
 
 
 def test_compliant_contacts_come_near_the_path_law() -> None:

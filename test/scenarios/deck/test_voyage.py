@@ -29,3 +29,12 @@ def test_a_unit_that_is_held_has_compliant_contacts_on_a_deck_that_only_rolls(he
 def test_a_unit_that_nothing_holds_has_rigid_contacts_on_a_deck_that_only_rolls() -> None:
     assert moved("auto", {}) == moved("rigid", {})
     assert not np.allclose(moved("auto", {}), moved("compliant", {}), rtol=0.0, atol=1e-9)
+
+
+def test_a_unit_that_is_to_stand_again_later_lies_until_the_end_where_it_fell() -> None:
+    for_good, until_later = (
+        sail({"": box()}, a_deck(0.3), 3.0, "rigid", restand=restand).units[0] for restand in (None, 100.0)
+    )
+    assert (until_later.toppled, until_later.stood) == (1, for_good.time)
+    assert until_later.time == 3.0 > for_good.time
+    assert until_later.moved == for_good.moved != 0.0

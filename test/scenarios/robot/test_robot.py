@@ -22,7 +22,7 @@ from impact_predictor.scenarios.robot.ground import SimulatedGround, blocks, sta
 from impact_predictor.scenarios.robot.machine import STEP, Machine, Physics
 from impact_predictor.scenarios.robot.scene import write_scene
 from impact_predictor.scenarios.robot.sensors import WalkSensors, walk_messages
-from impact_predictor.scenarios.robot.walk import STANDS, Walk, landings_of, walk
+from impact_predictor.scenarios.robot.walk import STANDS, SWING, Walk, landings_of, walk
 from impact_predictor.scenarios.truth import decode_truths
 
 pytest.importorskip("mujoco", reason="needs the extra robot (make test-extras)")
@@ -92,6 +92,16 @@ def test_a_robot_without_a_known_posture_stands_on_bent_legs(dog: RobotFiles) ->
     assert all(machine.posture[2::3] < -0.3)
 
 
+def test_joints_are_found_that_put_level_soles_where_they_are_wanted(tmp_path: Path) -> None:
+    legs = ("LF", "RF")
+    (tmp_path / "biped.urdf").write_text(urdf(legs).replace('type="fixed"', 'type="revolute"'))  # with ankles
+    sole = Sole(heel=-0.05, toe=0.1, width=0.05)
+    machine = Machine(RobotFiles(tmp_path / "biped.urdf", legs, sole=sole), SimulatedGround(), Physics())
+    wanted = machine.at_rest(machine.posture) + np.array([[[0.05, 0.0, 0.02]], [[-0.05, 0.0, 0.0]]])
+    assert wanted[:, 1] - wanted[:, 0] == pytest.approx(np.array([[0.15, 0.0, 0.0]] * 2), abs=1e-6)
+    assert machine.at_rest(machine.reach(wanted, machine.posture)) == pytest.approx(wanted, abs=1e-6)
+
+
 @pytest.mark.parametrize("ground", [SimulatedGround(), SimulatedGround(-0.1), blocks(0.02, 1), stairs(-0.03)])
 def test_the_ground_carries_the_robot(dog: RobotFiles, ground: SimulatedGround) -> None:
     run = walked(dog, ground)
@@ -148,6 +158,18 @@ def test_contacts_that_do_not_last_and_feet_that_have_not_swung_make_no_landing(
     made.positions[round(0.15 / STEP) : round(0.25 / STEP), 2] += 0.01
     told = [(one.foot, one.stamp) for one in landings_of(made)]
     assert told == [("LF", 300_000_000), ("RF", 300_000_000), ("RH", 300_000_000)]
+
+
+def test_a_landing_is_the_first_step_with_a_force_after_a_swing_while_other_feet_carry_ever_so_little(
+    level: Walk,
+) -> None:
+    forces, lift, swing = np.full((round(1.0 / STEP), 4, 3), [0.0, 0.0, 0.5]), 401, round(SWING / STEP)
+    forces[lift : lift + swing, 0] = forces[lift : lift + swing - 1, 1] = 0.0  # the other one is back too soon
+    made = level._replace(forces=forces, positions=level.positions[: len(forces)].copy())
+    made.positions[lift : lift + swing, 2] += 0.01
+    (landing,) = landings_of(made)
+    assert (landing.foot, landing.standing) == ("LF", ("LH", "RH"))
+    assert landing.stamp == round((lift + swing) * STEP * 1e9)
 
 
 def messages(run: Walk, **sensors: Any) -> dict[str, list[Any]]:
