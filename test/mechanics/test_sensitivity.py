@@ -123,6 +123,15 @@ def test_at_a_border_the_derivative_is_that_of_the_greater_side_and_says_so():
     )
 
 
+@pytest.mark.parametrize("speed", [1e-6, 1e6])
+def test_borders_and_derivatives_by_the_twist_are_the_same_at_any_speed(speed):
+    body = plate(length=1.0, height=0.4, mass=10.0, friction=0.4)._replace(old=None)
+    slow, other = (sensitivity(body, Twist(0.0, -each, 0.0)) for each in (1.0, speed))
+    assert other.one_sided == slow.one_sided
+    assert "vx" in other.one_sided  # with slip it is another impact
+    assert np.array(other.twist) == pytest.approx(np.array(slow.twist), abs=NEAR_BORDER)
+
+
 def test_without_and_with_full_restitution_the_derivative_is_one_sided():
     for restitution in (0.0, 1.0):
         body = plate(length=1.0, height=0.4, mass=10.0, friction=0.2, restitution=restitution)
