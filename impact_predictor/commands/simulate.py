@@ -74,10 +74,7 @@ def motion_options(angle: float) -> Callable[[F], F]:
     short_help="Simulate bodies that rock, as a table, a picture or a bag.",
     no_args_is_help=False,
     epilog=examples(
-        *(line for body in ("rod", "plate", "cylinder") for line in EXAMPLES[body][:2]),
-        EXAMPLES["wheel"][0],
-        DECK_EXAMPLES[0],
-        ROBOT_EXAMPLES[0],
+        *(lines[0] for lines in (*EXAMPLES.values(), DECK_EXAMPLES, ROBOT_EXAMPLES)),
     ),
 )
 def simulate() -> None:

@@ -8,6 +8,8 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
+from matplotlib.patches import Polygon
 from matplotlib.text import Text
 from numpy.typing import NDArray
 
@@ -255,6 +257,19 @@ def test_every_map_makes_a_picture_without_a_warning_and_writes_formulas_along_t
     assert (tmp_path / "map.svg").read_bytes() == first
     # What is deprecated is between matplotlib and its own libraries.
     assert [str(one.message) for one in recwarn if not issubclass(one.category, DeprecationWarning)] == []
+
+
+def test_the_sketch_of_a_cylinder_is_a_circle_about_its_mass_centre_through_the_edge_it_stands_on(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    drawn: list[Figure] = []
+    monkeypatch.setattr(Figure, "savefig", lambda figure, file, **_: drawn.append(figure) or file.write_bytes(b""))
+    write_map(tmp_path / "map.png", a_map("cylinder", cells=2))
+    _, sketch, _ = drawn[0].axes
+    (outline,) = sketch.patches
+    assert isinstance(outline, Polygon)
+    center, edge = (np.ravel(line.get_xydata()) for line in sketch.lines[:2])
+    assert np.hypot(*(outline.get_xy() - center).T) == pytest.approx(np.hypot(*(edge - center)))
 
 
 def test_axes_and_conditions_are_said_as_the_paper_does() -> None:
