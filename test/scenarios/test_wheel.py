@@ -144,7 +144,7 @@ def test_angles_that_do_not_go_around_are_refused_in_one_sentence(alpha: float) 
 
 @pytest.mark.parametrize("duration", [-1.0, 0.0, 1e5, inf, nan])
 def test_a_duration_that_is_none_or_too_long_is_refused_with_those_that_are_not(duration: float) -> None:
-    with pytest.raises(InputError, match="duration is .*; give a number of seconds between 0 and 1e5"):
+    with pytest.raises(InputError, match=r"duration is .*; give a number of seconds between 0 and 1e5"):
         roll(Wheel(HUB._replace(slope=0.0), ALPHA), duration=duration)
 
 
