@@ -1,7 +1,6 @@
 """Every touchdown of recorded cube tosses against predictions.mcap, in three dimensions, without the program itself.
 
     python benchmarks/check_touchdowns.py BAG PREDICTIONS [--half even|odd|all]
-    python benchmarks/check_touchdowns.py BAG PREDICTIONS --lead OTHER_PREDICTIONS
 
 Reads the odometry and the corners of the bag, and post_impact of the predictions: stamp = touchdown, pose there, twist
 right after, log time = stamp of the sample that caused it. Impacts are found from the heights of the corners alone. For
@@ -24,8 +23,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from rich.console import Console
-from rich.table import Table
 from rosbags.highlevel import AnyReader
 from rosbags.typesys import Stores, get_typestore
 from scipy.spatial.transform import Rotation
@@ -41,8 +38,6 @@ SLOWEST, CLEAR = 0.10, 0.2
 TOLERANCE, TOGETHER, LIFT = 0.0035, 0.005, 0.0005
 PAUSE = 250_000_000
 NEAR = 1.2
-EARLIEST = 8
-"""Frames ahead, 54 ms, up to which errors are told by lead time."""
 
 KINDS = ("flight>corner", "flight>edge", "corner>corner", "corner>edge+", "edge>corner", "edge>face")
 
@@ -255,10 +250,9 @@ def clear_of(motion: Track, seen: set[tuple[float, ...]]) -> Iterator[tuple[Impa
         yield impact, times[j + 2] > k + 3 and times[j] < k - 1
 
 
-def announced(motion: Track, told: dict[int, Told], impact: Impact, earlier: int = 0) -> Told | None:
-    """What was told of an impact so many frames before the last sample before it; None where it was not."""
-    k = impact.frame
-    state = told.get(int(motion.stamps[k - earlier])) if k >= earlier else None
+def announced(motion: Track, told: dict[int, Told], impact: Impact) -> Told | None:
+    """What the last sample before an impact told of it; None where it did not."""
+    state = told.get(int(motion.stamps[impact.frame]))
     near = state is not None and abs((state.stamp - motion.stamps[0]) * 1e-9 / DT - impact.time) < NEAR
     return state if near else None
 
@@ -300,39 +294,6 @@ def rows_of(motion: Track, told: dict[int, Told], seen: set[tuple[float, ...]]) 
             row = row._replace(error=error, old=lifts[0], new=lifts[1] if old or len(new) > 1 else None)
         rows.append(row)
     return rows
-
-
-def lead_times(bag: str, *predictions: str) -> Table:
-    """Announced parts and errors of times (ms) and twists by how many frames ahead some predictions told a touchdown.
-
-    Errors, in the median and at 90 %, are those of the isolated clear touchdowns that all of them announce so early.
-    """
-    tolds = [read(bag, one)[1] for one in predictions]
-    pairs: list[list[list[float]]] = [[] for _ in range(EARLIEST + 1)]
-    n = len(tolds)
-    heard, count, seen = np.zeros((EARLIEST + 1, len(tolds)), int), 0, set[tuple[float, ...]]()
-    for _, motion in motions_of(read(bag)[0]):
-        for impact, isolated in clear_of(motion, seen):
-            count += isolated
-            for earlier in range(EARLIEST + 1) if isolated else ():
-                states = [announced(motion, told, impact, earlier) for told in tolds]
-                heard[earlier] += [state is not None for state in states]
-                found = [None if state is None else missed(motion, state, impact.frame) for state in states]
-                times = [
-                    0.0 if state is None else abs((state.stamp - motion.stamps[0]) * 1e-6 - 1e3 * DT * impact.time)
-                    for state in states
-                ]
-                if None not in found:
-                    pairs[earlier].append([*times, *(one[0] for one in found if one is not None)])
-    table = Table("frames ahead", "n", *(f"{Path(one).name}: announced; ms, error; at 90 %" for one in predictions))
-    for earlier, errors_of in enumerate(pairs):
-        half, most = (np.quantile(np.array(errors_of), q, axis=0) for q in (0.5, 0.9))
-        cells = [
-            f"{heard[earlier, i] / count:.3f}; {half[i]:.2f} ms {half[n + i]:.3f}; {most[i]:.2f} ms {most[n + i]:.3f}"
-            for i in range(n)
-        ]
-        table.add_row(str(earlier), str(len(errors_of)), *cells)
-    return table
 
 
 def balanced(lifts: list[tuple[bool, bool]]) -> float:
@@ -391,12 +352,8 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("bag")
     parser.add_argument("predictions")
-    parser.add_argument("--lead", metavar="OTHER", help="other predictions: both by how early they told a touchdown")
     parser.add_argument("--half", choices=("even", "odd", "all"), default="all")
     given = parser.parse_args()
-    if given.lead is not None:
-        Console(width=120).print(lead_times(given.bag, given.predictions, given.lead))
-        return 0
     for kind, verdict in judged(given.bag, given.predictions, given.half).items():
         print(f"{kind:14s} {verdict}")
     return 0
