@@ -9,7 +9,6 @@ the rate is raised until messages are lost or late, with either executor.
 from __future__ import annotations
 
 import json
-import os
 import sys
 import tempfile
 import time
@@ -22,6 +21,7 @@ from typing import Final, NamedTuple
 import click
 from deck_load import HALF, READY, name_of, place_of
 from forms import in_both_forms
+from node_load import cpu_time, resident
 from rich.console import Console
 from rich.table import Table
 
@@ -68,17 +68,6 @@ def scene(bodies: int) -> str:
     return "/**:\n    ros__parameters:" + common + "".join(places)
 
 
-def cpu_time(process: int) -> float:
-    """Seconds of CPU time of a process so far."""
-    fields = Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()
-    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
-
-
-def memory(process: int) -> float:
-    """Resident MB of a process."""
-    return int(Path(f"/proc/{process}/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE") * 1e-6
-
-
 def measure(executor: str, bodies: int, rate: float, deck_rate: float, seconds: float) -> Measured:
     """One run of the node."""
     environment = ros_environment()
@@ -104,7 +93,7 @@ def measure(executor: str, bodies: int, rate: float, deck_rate: float, seconds: 
                 time.sleep(seconds - 1.0)
                 now = time.time_ns()
                 taken, window = cpu_time(node.process_id) - cpu, (now - clock) * 1e-9
-                size = memory(node.process_id)
+                size = resident(node.process_id)
                 while not publisher.ended:
                     node.check()
                     time.sleep(0.05)

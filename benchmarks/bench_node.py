@@ -75,14 +75,9 @@ def run(executor: str, scene: str, segments: list[Segment]) -> tuple[list[Sent],
 
 def node_arguments(executor: str) -> tuple[str, ...]:
     """How the predictor is started."""
-    return "-m", "impact_predictor.ros.node", *ros_arguments(executor)
-
-
-def ros_arguments(executor: str) -> list[str]:
-    """Its scene."""
     given = {"executor": executor, "body.contact_points": POINTS}
     words = [word for name, value in given.items() for word in ("-p", f"{name}:={value}")]
-    return ["--ros-args", "--params-file", PARAMETERS, *words]
+    return "-m", "impact_predictor.ros.node", "--ros-args", "--params-file", PARAMETERS, *words
 
 
 def figures(sent: Sent, heard: list[tuple[float, int]], reports: list[tuple[int, dict[str, str]]]) -> Figures:
@@ -168,26 +163,12 @@ def starts() -> list[str]:
     return [f"{bare:.2f}", f"{ours:.2f}", f"{ours / bare:.2f}"]
 
 
-def memory(messages: int) -> list[list[str]]:
-    """Rows: MB in memory after so many samples, of which `~/post_impact` is published to a listener."""
-    environment = ros_environment()
-    with tempfile.TemporaryDirectory() as folder:
-        file, heard = (str(Path(folder) / name) for name in ("sizes", "heard"))
-        arguments = LOAD, "feed", file, str(messages), *ros_arguments("single")
-        with Child("listener", environment, LOAD, "listen", heard), Child("predictor", environment, *arguments) as node:
-            while not node.ended:
-                time.sleep(0.2)
-            node.end()
-        return [[f"{number:,}", f"{size:.1f}"] for number, size in pickle.loads(Path(file).read_bytes())]
-
-
 @click.command()
 @click.option("--seconds", default=4.0, help="Of each segment.")
 @click.option("--repeats", default=5)
 @click.option("--executor", type=click.Choice(["both", "single", "events"]), default="both")
-@click.option("--only", type=click.Choice(["cost", "rate", "start", "memory"]), default=None)
-@click.option("--messages", default=1_000_000, help="Samples that the memory is watched over.")
-def main(seconds: float, repeats: int, executor: str, only: str | None, messages: int) -> None:
+@click.option("--only", type=click.Choice(["cost", "rate", "start"]), default=None)
+def main(seconds: float, repeats: int, executor: str, only: str | None) -> None:
     """Print the tables."""
     console = Console(width=110)
     kinds = ("single", "events") if executor == "both" else (executor,)
@@ -210,11 +191,6 @@ def main(seconds: float, repeats: int, executor: str, only: str | None, messages
             "bare s", "node s", "ratio", title=f"Start until others find the subscription, fastest of {STARTS}"
         )
         table.add_row(*starts())
-        console.print(table)
-    if only in (None, "memory"):
-        table = Table("samples", "MB", title="Memory of the predictor, samples handed over as fast as it takes them")
-        for row in memory(messages):
-            table.add_row(*row)
         console.print(table)
 
 

@@ -50,7 +50,7 @@ class Seen(NamedTuple):
     errors: int
     warnings: int
     announced: int
-    doubts: list[str]
+    doubts: tuple[str, ...]
 
 
 def noisy(sample: Sample, part: float, rng: np.random.Generator) -> Sample:
@@ -89,9 +89,7 @@ def watched(samples: list[Sample], scenes: dict[str, Scene], part: float) -> See
             if report.level is not levels[report.body]:
                 counts[report.level] += 1
             levels[report.body] = report.level
-    return Seen(
-        counts[Level.ERROR], counts[Level.WARN], announced, list(monitor.doubts()) if hasattr(monitor, "doubts") else []
-    )
+    return Seen(counts[Level.ERROR], counts[Level.WARN], announced, monitor.doubts())
 
 
 @click.command()

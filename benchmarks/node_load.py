@@ -3,7 +3,6 @@
     python benchmarks/node_load.py bare single|events
     python benchmarks/node_load.py publish FILE SCENE PROCESS,PROCESS SEGMENTS
     python benchmarks/node_load.py listen FILE
-    python benchmarks/node_load.py feed FILE COUNT --ros-args ARGUMENTS OF THE PREDICTOR
 
 The time at which a sample is published (ns of the machine's monotonic clock) travels as the first number of its pose's
 covariance, which both nodes pass on as it is. Publisher and listener write a pickle at their end.
@@ -51,7 +50,7 @@ class Segment(NamedTuple):
 
 
 class Sent(NamedTuple):
-    """A segment that was sent: how many, from when to when (monotonic ns); the node's CPU time in s and its MB."""
+    """A segment that was sent: how many, from when to when (monotonic ns); the node's CPU time in s."""
 
     node: str
     rate: float
@@ -59,7 +58,6 @@ class Sent(NamedTuple):
     begin: int
     end: int
     cpu: float
-    resident: float
 
 
 def bare(executor: str) -> None:
@@ -140,7 +138,7 @@ def publish(stop: Stop, file: str, scene: str, processes: str, segments: str) ->
         end = time.monotonic_ns()
         stop.wait(0.1)
         cost = cpu_time(process) - cpu
-        sent.append(Sent(segment.node, segment.rate, count, begin, end, cost, resident(process)))
+        sent.append(Sent(segment.node, segment.rate, count, begin, end, cost))
     stop.wait(SETTLING)
     node.destroy_node()
     Path(file).write_bytes(pickle.dumps([tuple(one) for one in sent]))
@@ -185,40 +183,10 @@ def listen(stop: Stop, file: str) -> int:
     return 0
 
 
-def feed(file: str, count: str) -> int:
-    """Hand samples to the predictor's own callback, in its process, as fast as it takes them; note its memory."""
-    import gc
-    import os
-
-    from impact_predictor.ros.predictor_node import PredictorNode
-
-    node = PredictorNode()
-    gc.freeze()  # as its program does
-    (take,) = (one.callback for one in node.subscriptions if one.topic_name == INPUTS[PREDICTOR])
-    samples = samples_of("tosses")
-    tenth = int(count) // 10
-    sizes = []
-    for number in range(1, 10 * tenth + 1):
-        data = samples[number % len(samples)]
-        struct.pack_into("<iI", data, 4, *divmod(number * STEP, 10**9))
-        take(bytes(data))
-        if number % 1000 == 0:
-            node._on_second()
-        if number % tenth == 0:
-            sizes.append((number, resident(os.getpid())))
-    node.destroy_node()
-    Path(file).write_bytes(pickle.dumps(sizes))
-    return 0
-
-
 if __name__ == "__main__":
     role, *arguments = sys.argv[1:]
     if role == "bare":
         bare(*arguments)
-    elif role == "feed":
-        from impact_predictor.ros.process import run
-
-        sys.exit(run(lambda stop: feed(*arguments[:2]), sys.argv))
     else:
         from impact_predictor.ros.process import run
 
