@@ -44,7 +44,7 @@ GROWTH: Final = 1.15
 
 def main() -> int:
     job = Job(read_scenes(str(find("config/cube_tosses.yaml"))), {}, answers=True)
-    columns = ("bags", "workers", "bags/s", "collector MB", "largest worker MB", "page s")
+    columns = ("bags", "workers", "bags/s", "collector MB", "largest worker MB", "page s", "page MB")
     table = Table(*columns, title="Peaks of resident memory; the page is made after the bags", title_justify="left")
     with tempfile.TemporaryDirectory() as name:
         bags = links(Path(name))
@@ -77,14 +77,15 @@ def links(folder: Path) -> list[str]:
 
 
 class Measured(NamedTuple):
-    """Bags per second, the peaks of resident memory in MB of this process and of the largest worker, and the s of the
-    page.
+    """Bags per second, the peaks of resident memory in MB of this process and of the largest worker, and the s and the MB
+    of the page.
     """
 
     rate: float
     collector: float
     worker: float
     page: float
+    size: float
 
 
 def measure(job: Job, bags: Sequence[str], workers: int, folder: Path) -> Measured:
@@ -105,8 +106,9 @@ def measure(job: Job, bags: Sequence[str], workers: int, folder: Path) -> Measur
     from impact_predictor.report.page.replay import write_replay_page
 
     begin = perf_counter()
-    write_replay_page(folder / "replay.html", answers)
-    return Measured(rate, peak(), worker, perf_counter() - begin)
+    page = folder / "replay.html"
+    write_replay_page(page, answers)
+    return Measured(rate, peak(), worker, perf_counter() - begin, page.stat().st_size * 1e-6)
 
 
 def peak() -> float:

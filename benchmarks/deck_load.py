@@ -21,7 +21,7 @@ from typing import Any, Final, NamedTuple
 from impact_predictor.prediction.types import Sample, Vector3
 from impact_predictor.prediction.vectors import add, axes_of, composed, cross, to_body, to_world, turned
 from impact_predictor.ros.messages import DIAGNOSTIC_ARRAY, ODOMETRY, UINT8, encode_odometry
-from impact_predictor.ros.process import Stop, message_class, run
+from impact_predictor.ros.process import Stop, message_class, run, spin
 
 PERIOD: Final = 8.0
 """Seconds of roll and heave, after which everything repeats itself."""
@@ -137,7 +137,6 @@ def publish(stop: Stop, file: str, bodies: int, rate: float, deck_rate: float, s
 
 def listen(stop: Stop, file: str, bodies: int) -> int:
     """Note when each mode of some bodies comes, until asked to end; and read the diagnostics, as a monitor does."""
-    from rclpy.executors import SingleThreadedExecutor
     from rclpy.node import Node
 
     node = Node("listener")
@@ -151,14 +150,9 @@ def listen(stop: Stop, file: str, bodies: int) -> int:
         heard[name] = []
         topic = f"/impact_predictor/{name}/mode"
         node.create_subscription(message_class(UINT8), topic, note(heard[name]), 100, raw=True)
-    reports: list[int] = []
-    node.create_subscription(message_class(DIAGNOSTIC_ARRAY), "/diagnostics", note(reports), 100, raw=True)
-    executor = SingleThreadedExecutor()
-    executor.add_node(node)
-    while not stop.requested:
-        executor.spin_once(timeout_sec=0.1)
-    Path(file).write_text(json.dumps({"modes": heard, "reports": reports}))
-    executor.shutdown()
+    node.create_subscription(message_class(DIAGNOSTIC_ARRAY), "/diagnostics", lambda _: None, 100, raw=True)
+    spin(node, stop, lambda: sum(map(len, heard.values())))
+    Path(file).write_text(json.dumps({"modes": heard}))
     node.destroy_node()
     return 0
 
