@@ -77,8 +77,8 @@ def links(folder: Path) -> list[str]:
 
 
 class Measured(NamedTuple):
-    """Bags per second, the peaks of resident memory in MB of this process and of the largest worker, and the s and the MB
-    of the page.
+    """Bags per second, the peaks of resident memory in MB of this process and of the largest worker, and the s and the
+    MB of the page.
     """
 
     rate: float
