@@ -11,7 +11,7 @@ from scipy.spatial.transform import Rotation
 
 from impact_predictor.mechanics.impact.spatial import Body, ContactPoints, SpatialOutcome, solve_spatial_impact
 from impact_predictor.mechanics.motion.spatial import Pull, SpatialState
-from impact_predictor.prediction.scene import Scene
+from impact_predictor.prediction.scene import Scene, triple
 from impact_predictor.prediction.types import Sample, Vector3
 
 HALF = 0.05
@@ -25,11 +25,6 @@ MASS, RESTITUTION = 0.4, 0.2
 ZEROS = (0.0,) * 36
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
-
-
-def triple(numbers: Any) -> Vector3:
-    x, y, z = (float(number) for number in numbers)
-    return x, y, z
 
 
 class Somewhere(NamedTuple):

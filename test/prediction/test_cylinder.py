@@ -11,9 +11,9 @@ from scipy.spatial.transform import Rotation
 
 from impact_predictor.mechanics.types import ContactState
 from impact_predictor.prediction.predictor import Predictor
-from impact_predictor.prediction.scene import Scene
+from impact_predictor.prediction.scene import Scene, triple
 from impact_predictor.prediction.spatial import PLANAR
-from impact_predictor.prediction.types import Sample, Touchdown, Vector3
+from impact_predictor.prediction.types import Sample, Touchdown
 
 MASS, INERTIA, RADIUS, HALF = 500.0, 90.0, 0.6, 0.3
 HEIGHT = np.sqrt(RADIUS**2 - HALF**2)
@@ -22,11 +22,6 @@ SOMEWHERE = Rotation.from_rotvec([0.3, -0.5, 0.9])
 """Of the support: the cylinder lies along its x, on edges at y = -HALF and HALF."""
 MOUNT = Rotation.from_rotvec([0.0, 0.7, 0.4])
 """From the axes of the cylinder's inertia to its frame."""
-
-
-def triple(numbers: Any) -> Vector3:
-    x, y, z = (float(number) for number in numbers)
-    return x, y, z
 
 
 def told(center: Any, velocity: Any, spin: Any, **changes: Any) -> Touchdown:

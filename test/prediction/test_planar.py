@@ -17,7 +17,7 @@ from impact_predictor.prediction.planar import (
     plane_of,
     posture_of,
 )
-from impact_predictor.prediction.scene import InertiaTensor, Scene
+from impact_predictor.prediction.scene import InertiaTensor, Scene, triple
 from impact_predictor.prediction.types import Sample, Vector3
 
 ROUNDING = 1e-13
@@ -81,11 +81,6 @@ def test_which_points_stand_and_which_strike_next(
 ) -> None:
     contacts = contacts_of(FLOOR, over_floor(gaps, rates))
     assert (None if contacts is None else (contacts.old, contacts.new)) == expected
-
-
-def triple(array: Array | list[float]) -> Vector3:
-    x, y, z = (float(part) for part in array)
-    return x, y, z
 
 
 def sample_of(

@@ -20,7 +20,7 @@ from impact_predictor.mechanics.impact import solve_impact
 from impact_predictor.mechanics.impact.spatial import Body, ContactPoints, solve_spatial_impact
 from impact_predictor.mechanics.types import Contact, Mode, Outcome, Twist, TwoPointBody
 from impact_predictor.prediction.predictor import Predictor
-from impact_predictor.prediction.scene import Scene
+from impact_predictor.prediction.scene import Scene, triple
 from impact_predictor.prediction.types import Leftover, Prediction, Sample, Touchdown, Vector3
 
 CLOSE = 1e-5
@@ -28,11 +28,6 @@ CLOSE = 1e-5
 
 Array = np.ndarray[tuple[int, ...], np.dtype[np.float64]]
 ZEROS = (0.0,) * 36
-
-
-def triple(array: Array | list[float]) -> Vector3:
-    x, y, z = (float(part) for part in array)
-    return x, y, z
 
 
 def turn(angle: float, point: Array | tuple[float, float]) -> Array:

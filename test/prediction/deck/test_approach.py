@@ -28,7 +28,7 @@ from impact_predictor.mechanics.types import Outcome, Twist
 from impact_predictor.prediction.deck.frame import post_impact
 from impact_predictor.prediction.deck.motion import ahead as constant
 from impact_predictor.prediction.predictor import Predictor
-from impact_predictor.prediction.scene import MovingDeck, Scene
+from impact_predictor.prediction.scene import MovingDeck, Scene, triple
 from impact_predictor.prediction.types import Felt, Moment, Prediction, Sample, Status, Vector3
 
 AGREES = 1e-9
@@ -183,11 +183,6 @@ class Placed(NamedTuple):
         )
         assert found.t_events[0].size == 1
         return float(found.t_events[0][0]), lambda time: PlanarState(*found.sol(time).tolist())
-
-
-def triple(array: Any) -> Vector3:
-    x, y, z = (float(part) for part in array)
-    return x, y, z
 
 
 def quaternion(rotation: Rotation) -> tuple[float, float, float, float]:
