@@ -1,7 +1,7 @@
 """The paper's experiment: rods that fall from one support onto another, predicted and observed (section 2.2).
 
     python benchmarks/falling_rods.py
-    python benchmarks/falling_rods.py --angle 30 --json
+    python benchmarks/falling_rods.py --angle 30
 
 Rods of 400 mm turn about one support and strike a second one. Where rigid theory is too simple for what was seen, the
 prediction itself says so by a flag.
@@ -10,18 +10,16 @@ prediction itself says so by a flag.
 from __future__ import annotations
 
 import argparse
-import json
 import sys
 from collections.abc import Sequence
 from functools import partial
 from math import degrees, inf, radians
-from typing import Any, Final, NamedTuple
+from typing import Final, NamedTuple
 
 from rich.console import Console
 
 from impact_predictor import Flag, Mode, Outcome, Twist, TwoPointBody, rod, solve_impact
 from impact_predictor.errors import InputError
-from impact_predictor.mechanics.impact.answer import VALIDITY
 from impact_predictor.mechanics.motion import next_touchdown, standing
 from impact_predictor.report.table import Column, say, show, table_of
 
@@ -113,29 +111,6 @@ def trials(friction: float, angle: float) -> list[list[RodTrial]]:
     return [[trial(one, a / 1e3, b / 1e3, friction, angle) for one in THICKNESSES] for a, b in places]
 
 
-def experiment_json(friction: float, angle: float) -> dict[str, Any]:
-    """All trials and the borders, as JSON has them."""
-    # The impulse of gravity on a rod of 1 kg while the contact lasts.
-    weight = VALIDITY.gravity * VALIDITY.contact_time
-    return {
-        "borders": [{"thickness": thickness, "a": border(thickness, friction)} for thickness in THICKNESSES],
-        "trials": [
-            {
-                "thickness": one.thickness,
-                "a": one.a,
-                "b": one.b,
-                "predicted": one.outcome.mode.name,
-                "observed": one.observed.name,
-                "omega_ratio": one.ratio,
-                "gravity_share": weight / one.outcome.impulses[1][0],
-                "flags": [flag.name for flag in Flag if flag & one.outcome.flags],
-            }
-            for row in trials(friction, angle)
-            for one in row
-        ],
-    }
-
-
 def print_experiment(console: Console, friction: float, angle: float) -> None:
     """Print what is predicted, beside what was seen."""
     rows = trials(friction, angle)
@@ -172,13 +147,9 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser = argparse.ArgumentParser(description="Predict the paper's falling rods, beside what it observed.")
     parser.add_argument("--friction", type=float, default=0.4, help="of rod and supports (0.4)")
     parser.add_argument("--angle", type=float, default=15.0, help="of release in degrees, 15 to 30 in the paper (15)")
-    parser.add_argument("--json", action="store_true", help="print JSON")
     given = parser.parse_args(arguments)
     try:
-        if given.json:
-            print(json.dumps(experiment_json(given.friction, given.angle), indent=2, allow_nan=False))
-        else:
-            print_experiment(Console(), given.friction, given.angle)
+        print_experiment(Console(), given.friction, given.angle)
     except (InputError, ValueError) as error:
         sys.exit(f"error: {error}")
 

@@ -1,6 +1,6 @@
 """How right the told landing times of walking machines are, beside the answers that anybody would try first.
 
-    python benchmarks/walker_times.py [--json FILE] [--seed N [--world]] [BAG SCENE]...
+    python benchmarks/walker_times.py [--seed N [--world]] [BAG SCENE]...
 
 Each BAG has /odom, /contact_geometry or /feet_states, and the true landings on /truth/landings; a schedule and the
 terrain are told too. Without bags it is the plan of HyQ.
@@ -23,7 +23,6 @@ each velocity, of the trunk and of the feet, which are told relative to the nois
 from __future__ import annotations
 
 import argparse
-import json
 import sys
 from bisect import bisect_left, bisect_right
 from collections import defaultdict
@@ -418,7 +417,6 @@ def recorded(bag_path: str, scene_path: str) -> Walk:
 
 def main() -> int:
     parser = argparse.ArgumentParser()
-    parser.add_argument("--json", type=Path)
     parser.add_argument("--seed", type=int)
     parser.add_argument("--world", action="store_true")
     parser.add_argument("records", nargs="*", metavar="BAG SCENE")
@@ -430,8 +428,6 @@ def main() -> int:
         walks = [with_noise(walk, told.seed, on_robot=not told.world) for walk in walks]
     rows = [row for walk in walks for row in figures(walk)]
     show(Console(width=170), table_of(rows))
-    if told.json is not None:
-        told.json.write_text(json.dumps(rows, indent=1), encoding="utf-8")
     return 0
 
 
