@@ -26,7 +26,6 @@ import sys
 import time
 from collections.abc import Callable
 from contextlib import ExitStack
-from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any, Final
@@ -38,7 +37,7 @@ from impact_predictor.ros.messages import ODOMETRY, OUTPUTS, POLYGON, encode_odo
 from impact_predictor.ros.process import Stop, message_class, run, spin
 from impact_predictor.ros.processes import Child, ros_environment
 
-ROOT: Final = Path(__file__).resolve().parents[1]
+SCENE: Final = Path(__file__).resolve().parents[1] / "config/walker_hyq.yaml"
 RATE: Final = 500.0
 SECONDS: Final = 20.0
 SETTLED: Final = 1.0
@@ -47,11 +46,8 @@ PARTS: Final = (50, 90, 99, 99.9, 100)
 EXECUTORS: Final = ("single", "events")
 BY_CONTROLLER: Final = ("post_impact", "mode")
 """What a controller listens to."""
-CASES: Final = {
-    "four feet": ("walker_hyq", BY_CONTROLLER),
-    "four feet, everything heard": ("walker_hyq", tuple(OUTPUTS)),
-}
-"""The scene of each, and what is heard."""
+CASES: Final = {"four feet": BY_CONTROLLER, "four feet, everything heard": tuple(OUTPUTS)}
+"""What is heard in each."""
 TOPICS: Final = {"contact_geometry": POLYGON, "odom": ODOMETRY}
 QUEUE: Final = 100
 REAL_TIME: Final = "--real-time"
@@ -69,11 +65,7 @@ PRIORITY: Final = 10
 """Of SCHED_FIFO, where it is asked for."""
 
 
-RECORDS: Final = {"walker_hyq": partial(trot, RATE)}
-"""What is published, by its scene."""
-
-
-def publish(stop: Stop, file: str, seconds: str, scene: str) -> int:
+def publish(stop: Stop, file: str, seconds: str) -> int:
     """Publish contact points, then the pose, at each step, to each node in its turn; note when, by the stamp."""
     from rclpy.node import Node
 
@@ -88,7 +80,7 @@ def publish(stop: Stop, file: str, seconds: str, scene: str) -> int:
     stop.wait(1.0)  # the other side finds this one by itself
     messages = [
         (sample.stamp, encode_polygon(geometry), encode_odometry(sample))
-        for geometry, sample in RECORDS[scene](float(seconds), time.time_ns())
+        for geometry, sample in trot(RATE, float(seconds), time.time_ns())
     ]
     called: list[dict[int, int]] = [{} for _ in INPUTS]
     begin, step = time.monotonic(), 0
@@ -148,25 +140,26 @@ def predict(file: str) -> int:
 
 
 def listen(stop: Stop, file: str, *names: str) -> int:
-    """Hear answers; count them by their topics."""
+    """Hear answers; count the modes, of which each sample has one."""
     from rclpy.node import Node
 
     node = Node("sink", use_global_arguments=False)
-    counts = dict.fromkeys(names, 0)
+    heard = 0
 
-    def counter(name: str) -> Callable[[bytes], None]:
-        def count(_: bytes) -> None:
-            counts[name] += 1
+    def count(_: bytes) -> None:
+        nonlocal heard
+        heard += 1
 
-        return count
+    def ignore(_: bytes) -> None:
+        pass
 
     for name in names:
-        kind = message_class(OUTPUTS[name].type_name)
-        node.create_subscription(kind, f"/impact_predictor/{name}", counter(name), QUEUE, raw=True)
-        node.create_subscription(message_class(ODOMETRY), INPUTS[BARE] + name, lambda _: None, QUEUE, raw=True)
-    spin(node, stop, lambda: sum(counts.values()))
+        kind, take = message_class(OUTPUTS[name].type_name), count if name == "mode" else ignore
+        node.create_subscription(kind, f"/impact_predictor/{name}", take, QUEUE, raw=True)
+        node.create_subscription(message_class(ODOMETRY), INPUTS[BARE] + name, ignore, QUEUE, raw=True)
+    spin(node, stop, lambda: heard)
     node.destroy_node()
-    return _write(file, counts)
+    return _write(file, heard)
 
 
 def _write(file: str, content: object) -> int:
@@ -177,7 +170,7 @@ def _write(file: str, content: object) -> int:
 ROLES: Final = ("publish", "predict", "pass_on", "listen")
 
 
-def measure(executor: str, scene: str, heard: tuple[str, ...], seconds: float, *how: str) -> dict[str, float]:
+def measure(executor: str, heard: tuple[str, ...], seconds: float, *how: str) -> dict[str, float]:
     """Figures of one run by their names."""
     # Here, so that the processes under test load what the program itself does, and no more.
     import numpy as np
@@ -189,9 +182,9 @@ def measure(executor: str, scene: str, heard: tuple[str, ...], seconds: float, *
         def start(role: str, *more: str) -> Child:
             return stack.enter_context(Child(role, environment, __file__, *how, role, files[role], *more))
 
-        arguments = ("--ros-args", "--params-file", str(ROOT / f"config/{scene}.yaml"), "-p", f"executor:={executor}")
+        arguments = ("--ros-args", "--params-file", str(SCENE), "-p", f"executor:={executor}")
         sink, node, bare = start("listen", *heard), start("predict", *arguments), start("pass_on", executor, *heard)
-        publisher, stolen = start("publish", str(seconds + SETTLED), scene), stolen_time()
+        publisher, stolen = start("publish", str(seconds + SETTLED)), stolen_time()
         while not publisher.ended:
             time.sleep(0.1)
             for one in (sink, node, bare):
@@ -199,7 +192,7 @@ def measure(executor: str, scene: str, heard: tuple[str, ...], seconds: float, *
         stolen = stolen_time() - stolen
         for one in (publisher, node, bare, sink):
             one.end()
-        called, returned, passed_on, counts = (
+        called, returned, passed_on, received = (
             pickle.loads(Path(files[role]).read_bytes()) for role in ("publish", "predict", "pass_on", "listen")
         )
     stamps = sorted(called["predictor"])[round(RATE * SETTLED) :]
@@ -213,7 +206,7 @@ def measure(executor: str, scene: str, heard: tuple[str, ...], seconds: float, *
     return {
         "samples": len(stamps),
         "not answered": len(stamps) - len(answered),
-        "lost to the sink": len(returned) - counts["mode"],
+        "lost to the sink": len(returned) - received,
         **{f"{part} us: predictor": float(ours) for part, (ours, _) in parts.items()},
         **{f"{part} us: bare node": float(theirs) for part, (_, theirs) in parts.items()},
         "p50 us: difference": float(parts["p50"][0] - parts["p50"][1]),
@@ -241,9 +234,9 @@ def main(words: list[str]) -> int:
     seconds = next((float(word) for word in words if word not in how), SECONDS)
     title = f"us from the publisher's call to the return of the predictor's publish; {RATE:.0f} Hz, {seconds:g} s each"
     columns: dict[str, list[str]] = {}
-    for case, (scene, heard) in CASES.items():
+    for case, heard in CASES.items():
         for executor in EXECUTORS:
-            figures = measure(executor, scene, heard, seconds, *how)
+            figures = measure(executor, heard, seconds, *how)
             columns[f"{case}\n{executor}"] = [f"{number:.{int(name in ROUGH)}f}" for name, number in figures.items()]
     table = Table("", *columns, title=title)
     for name, *numbers in zip(figures, *columns.values(), strict=True):
