@@ -28,6 +28,8 @@ from dataclasses import astuple, dataclass
 from pathlib import Path
 from typing import Final
 
+from node_load import cpu_time, resident
+
 from impact_predictor.bags.read import read_messages, topics
 from impact_predictor.ros.cdr import decode_diagnostic_array
 from impact_predictor.ros.messages import DIAGNOSTIC_ARRAY, ODOMETRY
@@ -147,7 +149,7 @@ def soak(arguments: argparse.Namespace) -> int:
                 else:
                     publisher.end()
         time.sleep(SETTLING)
-        cpu = processor_time(node.process_id)
+        cpu = cpu_time(node.process_id)
         node.end()
         bare.end()
         listener.end()
@@ -288,17 +290,6 @@ def listen(stop: Stop, plan: Plan) -> int:
     print(json.dumps(numbers), flush=True)
     node.destroy_node()
     return 0
-
-
-def resident(process: int) -> float:
-    """The resident memory of a process, in MB."""
-    return int(Path(f"/proc/{process}/statm").read_text(encoding="ascii").split()[1]) * os.sysconf("SC_PAGE_SIZE") / 1e6
-
-
-def processor_time(process: int) -> float:
-    """The processor time of a process, in s."""
-    fields = Path(f"/proc/{process}/stat").read_text(encoding="ascii").rpartition(")")[2].split()
-    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
 
 def grown(points: list[tuple[float, float]]) -> float:
