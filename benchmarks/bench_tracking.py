@@ -113,21 +113,6 @@ def tracking(record: Record, window: float, noise: float) -> tuple[float, float]
     return rms(found[:, :3]), rms(found[:, 6:])
 
 
-def by_degree(record: Record, window: float, noise: float, degree: int) -> float:
-    """Error in m/s^2 of the acceleration along the deck's normal, by a polynomial of a degree through velocities."""
-    times = np.array([sample.stamp for sample in record.samples]) / 1e9
-    count = round(window / (times[1] - times[0])) + 1
-    if count <= degree:
-        return np.nan
-    powers = np.vander(times[:count] - times[count - 1], degree + 1, increasing=True)
-    weights = np.linalg.pinv(powers)[1]
-    velocity = np.array([sample.linear[2] for sample in record.samples])
-    exact = np.gradient(velocity, times)
-    measured = velocity + noise * np.random.default_rng(0).standard_normal(len(velocity))
-    found = np.convolve(measured, weights[::-1], "valid")
-    return rms((found - exact[count - 1 :])[:-1, None])
-
-
 Forecast = Callable[[Deck, Array], Array]
 """Gravity felt and angular velocity, (n, 6), at times in s after a deck's last message."""
 
@@ -279,15 +264,6 @@ def main(seconds: float) -> None:
     pontoon = simulated("pontoon, 5 s waves of 1 m", Vessel(), SeaState(1.0, 5.0), seconds)
     ship = simulated("ship, 9 s waves of 4 m", SHIP, SeaState(4.0, 9.0), seconds)
     check_of_sensor(vessel, sensed, console)
-
-    degrees = table(
-        "Acceleration of the pontoon, error in m/s^2, by the degree of the polynomial through the velocities",
-        *("noise, m/s", "window, s", "1", "2 (used)", "3"),
-    )
-    for noise, window in product(NOISES, WINDOWS):
-        row = [f"{by_degree(pontoon, window, noise, degree):.4f}" for degree in (1, 2, 3)]
-        degrees.add_row(f"{noise:g}", f"{window:g}", *row)
-    console.print(degrees)
 
     windows = table(
         "Tracking: error of gravity, m/s^2, and of angular acceleration, rad/s^2",
