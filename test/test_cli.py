@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 from click.testing import CliRunner, Result
+from command_line import refusal_of
 
 from impact_predictor import Flag, Mode, Outcome, Twist, __version__, plate, solve_impact
 from impact_predictor.bags.read import BagMessage, read_messages, topics
@@ -33,13 +34,7 @@ def run(*arguments: str) -> Result:
 
 
 def refused(*arguments: str) -> str:
-    """The one line on standard error after which nothing was done."""
-    result = run(*arguments)
-    assert result.exit_code == 2
-    assert result.stdout == ""
-    (line,) = result.stderr.splitlines()
-    assert line.startswith("error: ")
-    return line
+    return refusal_of(run(*arguments))
 
 
 @pytest.fixture(scope="module")

@@ -10,10 +10,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-from click.testing import CliRunner, Result
+from command_line import invoke
 
 from impact_predictor import Contact, Outcomes, Twist, TwoPointBody, solve_impacts
-from impact_predictor.cli import main
 from impact_predictor.commands import bench
 from impact_predictor.mechanics import invariants
 from impact_predictor.mechanics.invariants import CLAIMED, LIMITS, violations
@@ -23,9 +22,7 @@ BROKEN = 1
 NAMES = {"Contact": Contact, "Twist": Twist, "TwoPointBody": TwoPointBody, "violations": violations}
 """What a line that computes a violation again uses."""
 
-
-def run(*arguments: str) -> Result:
-    return CliRunner().invoke(main, ("bench", "invariants", *arguments), terminal_width=100)
+run = partial(invoke, "bench", "invariants")
 
 
 @pytest.fixture

@@ -4,18 +4,18 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
+from functools import partial
 from math import radians
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any, NamedTuple
 
 import pytest
-from click.testing import CliRunner, Result
+from command_line import answer_of, invoke
 
 from impact_predictor.bags.read import read_messages
 from impact_predictor.bags.write import BagWriter
 from impact_predictor.calibration.scene_file import NewValues, changed
-from impact_predictor.cli import main
 from impact_predictor.commands.calibrate import friction_seen
 from impact_predictor.parameters.file import read_values
 from impact_predictor.prediction.watch.slips import FrictionSeen
@@ -40,9 +40,7 @@ SCENE = f"""# Plates in the hall.
       time: 1.0e-3
 """
 
-
-def run(*arguments: str) -> Result:
-    return CliRunner().invoke(main, ("calibrate", *arguments), terminal_width=100)
+run = partial(invoke, "calibrate")
 
 
 def record(folder: Path, angles: Sequence[int]) -> list[str]:
@@ -68,9 +66,7 @@ def scene(tmp_path: Path) -> str:
 
 
 def fitted(*arguments: str) -> Any:
-    result = run(*arguments, "--json")
-    assert result.exit_code == 0, result.output
-    return json.loads(result.stdout)
+    return answer_of(run(*arguments, "--json"))
 
 
 def test_the_friction_of_simulated_plates_comes_back_within_its_interval_though_one_bag_cannot_be_read(
@@ -121,7 +117,7 @@ def test_the_scene_file_keeps_its_comments_and_is_read_by_replay(plates: list[st
     assert read_values(output)["contact.friction"] == pytest.approx(FRICTION, abs=6e-3)
     assert read_values(output)["contact.restitution"] == pytest.approx(RESTITUTION, abs=6e-3)
     assert list(written.folder.glob("*.partial")) == []
-    assert CliRunner().invoke(main, ("replay", plates[0], "--params", str(output))).exit_code == 0
+    assert invoke("replay", plates[0], "--params", str(output)).exit_code == 0
 
 
 def test_the_table_tells_the_intervals_and_what_is_not_told(written: Written) -> None:
@@ -168,7 +164,7 @@ def test_cube_tosses_are_predicted_better_with_what_is_fitted_to_others(tmp_path
     }
     (tmp_path / "given.yaml").write_text(changed(find(CUBES[1]).read_text(), published))
     arguments = ("identify", str(tosses), "--params", str(tmp_path / "given.yaml"), "-o", str(body))
-    assert CliRunner().invoke(main, arguments).exit_code == 0
+    assert invoke(*arguments).exit_code == 0
     answer = fitted(str(tosses), "--params", str(body))
     for part in ("median", "p90", "mean"):
         assert answer["held_out_error"][part] < answer["given_error"][part]
@@ -184,7 +180,7 @@ def test_the_friction_of_a_crate_that_slides_on_a_deck_is_told_as_an_interval(tm
     given = find("config/deck_crate.yaml").read_text(encoding="utf-8")
     scene.write_text(changed(given, {"contact.friction": NewValues((0.3,), "")}), encoding="utf-8")
     sail = ["simulate", "deck", "--params", str(scene), "--duration", "60", "--rate", "20", "--deck-rate", "20"]
-    assert CliRunner().invoke(main, (*sail, "-o", bag)).exit_code == 0
+    assert invoke(*sail, "-o", bag).exit_code == 0
     result = run(bag, "--params", str(scene), "--json")
     assert result.exit_code == 0
     held, slid = json.loads(result.stdout)["friction_seen"][""]

@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 import json
+from functools import partial
 from pathlib import Path
 
-from click.testing import CliRunner, Result
+from command_line import invoke
 
-from impact_predictor.cli import main
 from impact_predictor.native import form
 
 CONFIG = Path(__file__).parents[1] / "config"
 
-
-def run(*arguments: str) -> Result:
-    return CliRunner().invoke(main, ("explain", *arguments), terminal_width=100)
+run = partial(invoke, "explain")
 
 
 def test_a_program_gets_every_feature_with_its_reason_and_the_topics() -> None:

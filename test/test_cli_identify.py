@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-import json
+from functools import partial
 from pathlib import Path
 
 import pytest
-from click.testing import CliRunner, Result
+from command_line import answer_of, invoke
 from scipy.spatial.transform import Rotation
 from tossed_bodies import CENTER, GIVEN, TRUE, tosses
 
 from impact_predictor.bags.write import BagWriter
-from impact_predictor.cli import main
 from impact_predictor.parameters.file import read_values
 from impact_predictor.prediction.types import Geometry, Sample
 from impact_predictor.ros.messages import ODOMETRY, POLYGON, encode_odometry, encode_polygon
@@ -27,9 +26,7 @@ SCENE = f"""# A box in the hall.
       friction: 0.3
 """
 
-
-def run(*arguments: str) -> Result:
-    return CliRunner().invoke(main, ("identify", *arguments), terminal_width=100)
+run = partial(invoke, "identify")
 
 
 def record(path: Path, number: int) -> str:
@@ -62,9 +59,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.mark.usefixtures("few_resamples")
 def test_the_json_tells_the_true_body_and_the_scene_file_has_it(folder: Path) -> None:
     scene, output = str(folder / "scene.yaml"), str(folder / "identified.yaml")
-    result = run(str(folder / "box.mcap"), "--params", scene, "-o", output, "--json")
-    assert result.exit_code == 0, result.output
-    answer = json.loads(result.stdout)
+    answer = answer_of(run(str(folder / "box.mcap"), "--params", scene, "-o", output, "--json"))
     assert (answer["motions"], answer["repeated_motions"]) == (60, 0)
     assert list(answer["body"]) == ["ixx", "iyy", "izz", "ixy", "ixz", "iyz", "center_x", "center_y", "center_z"]
     assert all(one["told"] and one["low"] <= one["value"] <= one["high"] for one in answer["body"].values())

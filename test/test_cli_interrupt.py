@@ -6,11 +6,11 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from click.testing import CliRunner, Result
+from click.testing import Result
+from command_line import invoke
 
 from impact_predictor.bags.read import topics
 from impact_predictor.bags.write import BagWriter
-from impact_predictor.cli import main
 from impact_predictor.commands.progress import say_unfinished
 
 ROOT = Path(__file__).parents[1]
@@ -27,22 +27,21 @@ WRITING = {
 def rod(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A bag of a rod."""
     bag = tmp_path_factory.mktemp("rod") / "rod.mcap"
-    assert CliRunner().invoke(main, ["simulate", "rod", "-o", str(bag)]).exit_code == 0
+    assert invoke("simulate", "rod", "-o", str(bag)).exit_code == 0
     return bag
 
 
 @pytest.fixture(autouse=True)
-def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, rod: Path) -> Path:
-    (tmp_path / "rod.mcap").hardlink_to(rod)
-    monkeypatch.chdir(tmp_path)
-    return tmp_path
+def folder(folder: Path, rod: Path) -> Path:
+    (folder / "rod.mcap").hardlink_to(rod)
+    return folder
 
 
 @pytest.fixture
 def interrupted(monkeypatch: pytest.MonkeyPatch) -> Callable[..., Result]:
     """A command that Ctrl-C meets when it has written so many messages, in all bags."""
 
-    def invoke(messages: int, *arguments: str) -> Result:
+    def begun(messages: int, *arguments: str) -> Result:
         written = 0
         write = BagWriter.write
 
@@ -54,9 +53,9 @@ def interrupted(monkeypatch: pytest.MonkeyPatch) -> Callable[..., Result]:
             write(self, topic, type_name, log_time, data)
 
         monkeypatch.setattr(BagWriter, "write", count)
-        return CliRunner().invoke(main, arguments)
+        return invoke(*arguments)
 
-    return invoke
+    return begun
 
 
 @pytest.mark.parametrize("command", WRITING)
@@ -99,7 +98,7 @@ def test_of_several_bags_those_that_are_done_stay_and_the_one_that_was_begun_is_
 
     with monkeypatch.context() as patch:
         patch.setattr(BagWriter, "write", count)
-        assert CliRunner().invoke(main, [*REPLAY, bags[0], "-o", "one.mcap"]).exit_code == 0
+        assert invoke(*REPLAY, bags[0], "-o", "one.mcap").exit_code == 0
     result = interrupted(whole + 20, *REPLAY, *bags, "-o", "out")
     assert result.exit_code == 130
     assert "note: stopped after 1 of 3 bags; what they gave is kept" in result.stderr

@@ -3,21 +3,18 @@
 from __future__ import annotations
 
 import json
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import pytest
-from click.testing import CliRunner, Result
-
-from impact_predictor.cli import main
+from command_line import invoke
 
 ROOT = Path(__file__).parents[1]
 SCENE = str(ROOT / "config/deck_lashed.yaml")
 VESSEL = ("--vessel", "120", "20", "1.4", "15", "--position", "0.7")
 
-
-def run(*arguments: str) -> Result:
-    return CliRunner().invoke(main, ("lashings", *arguments), terminal_width=100)
+run = partial(invoke, "lashings")
 
 
 def balances(*arguments: str) -> dict[str, Any]:

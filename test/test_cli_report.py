@@ -5,13 +5,13 @@ from __future__ import annotations
 import csv
 import json
 import sys
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import pytest
-from click.testing import CliRunner, Result
+from command_line import invoke
 
-from impact_predictor.cli import main
 from impact_predictor.report import accuracy
 
 REPORT = Path(__file__).parent / "report" / "page_report.json"
@@ -23,14 +23,12 @@ def made_up(part: float, command: str, tell: object) -> dict[str, Any]:
 
 
 @pytest.fixture(autouse=True)
-def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    monkeypatch.chdir(tmp_path)
+def folder(folder: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.setattr(accuracy, "report", made_up)
-    return tmp_path
+    return folder
 
 
-def run(*arguments: str) -> Result:
-    return CliRunner().invoke(main, ("report", *arguments), terminal_width=100)
+run = partial(invoke, "report")
 
 
 def test_page_json_and_csv_are_written_and_nothing_else(folder: Path) -> None:

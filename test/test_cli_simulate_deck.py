@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-import json
 import shlex
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import pytest
-from click.testing import CliRunner, Result
+from command_line import answer_of, invoke, refusal_of
 from records import impacts_of, samples_of
 
 from impact_predictor.bags.read import topics
-from impact_predictor.cli import main
 from impact_predictor.commands.simulate_deck import EXAMPLES, SCENE, simulate_deck
 from impact_predictor.parameters.file import read_values
 from impact_predictor.prediction.scene import Scene, scenes_of
@@ -25,20 +24,16 @@ SCENES = ("deck_crate.yaml", "deck_drum.yaml", "deck_lashed.yaml", "deck_many.ya
 
 
 @pytest.fixture(autouse=True)
-def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "config").symlink_to(ROOT / "config")
-    return tmp_path
+def folder(folder: Path) -> Path:
+    (folder / "config").symlink_to(ROOT / "config")
+    return folder
 
 
-def run(*arguments: str) -> Result:
-    return CliRunner().invoke(main, ("simulate", "deck", *arguments), terminal_width=100)
+run = partial(invoke, "simulate", "deck")
 
 
 def simulated(*arguments: str) -> Any:
-    result = run(*arguments, "--json")
-    assert result.exit_code == 0, result.stderr
-    return json.loads(result.stdout)
+    return answer_of(run(*arguments, "--json"))
 
 
 def scenes(name: str) -> dict[str, Scene]:
@@ -184,7 +179,7 @@ def test_every_example_works() -> None:
         arguments = shlex.split(line)[1:]
         if "--duration" not in arguments:
             arguments += ["--duration", "60"]
-        result = CliRunner().invoke(main, arguments)
+        result = invoke(*arguments)
         assert result.exit_code == 0, result.stderr
 
 
@@ -212,10 +207,5 @@ def test_a_mistake_is_said_in_one_sentence_and_nothing_is_written(
     folder: Path, arguments: list[str], sentence: str
 ) -> None:
     (folder / "taken").write_text("something else")
-    result = run(*arguments)
-    assert result.exit_code == 2
-    assert result.stdout == ""
-    (line,) = result.stderr.splitlines()
-    assert line.startswith("error: ")
-    assert sentence in line
+    assert sentence in refusal_of(run(*arguments))
     assert sorted(file.name for file in folder.iterdir()) == ["config", "taken"]

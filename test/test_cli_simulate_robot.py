@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import json
 import sys
+from functools import partial
 from pathlib import Path
-from typing import Any
 
 import pytest
-from click.testing import CliRunner, Result
+from command_line import answer_of, invoke
 
 from impact_predictor.bags.read import topics
-from impact_predictor.cli import main
 from impact_predictor.commands import simulate_robot
 from impact_predictor.scenarios.landing import LANDING_TOPIC
 from impact_predictor.scenarios.robot import description, gait
@@ -19,19 +17,9 @@ from impact_predictor.scenarios.robot import description, gait
 FOUR = "FL_foot,FR_foot,RL_foot,RR_foot"
 
 
-@pytest.fixture(autouse=True)
-def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    monkeypatch.chdir(tmp_path)
-    return tmp_path
+pytestmark = pytest.mark.usefixtures("folder")
 
-
-def run(*arguments: str) -> Result:
-    return CliRunner().invoke(main, ("simulate", "robot", *arguments), terminal_width=100)
-
-
-def answered(result: Result) -> Any:
-    assert result.exit_code == 0, result.stderr
-    return json.loads(result.stdout)
+run = partial(invoke, "simulate", "robot")
 
 
 def test_the_names_of_robots_and_gaits_are_those_of_the_library() -> None:
@@ -82,14 +70,14 @@ def test_without_mujoco_or_models_the_extra_is_named(monkeypatch: pytest.MonkeyP
 @pytest.mark.extras
 def test_a_robot_trots_and_its_bag_comes_with_a_scene() -> None:
     pytest.importorskip("mujoco", reason="needs the extra robot")
-    answer = answered(run("--duration", "2", "-o", "trot.mcap", "--json"))
+    answer = answer_of(run("--duration", "2", "-o", "trot.mcap", "--json"))
     assert (answer["robot"], answer["fallen"]) == ("go1", False)
     assert answer["mass"] == pytest.approx(13.1, abs=0.1)
     assert len(answer["landings"]) > 8
     for landing in answer["landings"]:
         assert [one["after"] for one in landing["impulses"][:3]] == [0.001, 0.002, 0.005]
     assert {"/odom", "/contact_geometry", "/joint_states", LANDING_TOPIC} <= set(topics("trot.mcap"))
-    replayed = answered(CliRunner().invoke(main, ("replay", "trot.mcap", "--params", "trot.yaml", "--json")))
+    replayed = answer_of(invoke("replay", "trot.mcap", "--params", "trot.yaml", "--json"))
     assert replayed["truth"]["touchdowns"] == len(answer["landings"])
     Path("trot.yaml").write_text("mine: true\n")
     result = run("--duration", "1", "-o", "trot.mcap")
@@ -103,7 +91,7 @@ def test_feet_may_be_told_by_joints_or_names_and_the_ground_by_a_map(options: tu
     pytest.importorskip("mujoco", reason="needs the extra robot")
     pytest.importorskip("pinocchio", reason="needs the extra articulated")
     assert run(*options, "--duration", "3", "-o", "trot.mcap").exit_code == 0
-    replayed = answered(CliRunner().invoke(main, ("replay", "trot.mcap", "--params", "trot.yaml", "--json")))
+    replayed = answer_of(invoke("replay", "trot.mcap", "--params", "trot.yaml", "--json"))
     assert replayed["truth"]["touchdowns"] > 15
     assert replayed["truth"]["missed"] <= 0.2 * replayed["truth"]["touchdowns"]
 
@@ -114,7 +102,7 @@ def test_flat_feet_told_by_joints_land_with_heel_or_toe_or_both_at_once() -> Non
     pytest.importorskip("pinocchio", reason="needs the extra articulated")
     result = run("talos", "--swing", "0.4", "--strike", "0.3", "--by-joints", "--duration", "4", "-o", "steps.mcap")
     assert result.exit_code == 0, result.stderr
-    replayed = answered(CliRunner().invoke(main, ("replay", "steps.mcap", "--params", "steps.yaml", "--json")))
+    replayed = answer_of(invoke("replay", "steps.mcap", "--params", "steps.yaml", "--json"))
     points = [one["point"] for one in replayed["touchdowns"] if one["landing_speed"] > 0.4]
     assert {"heel", "toe"} <= set(points) <= {"heel", "toe", None}
 

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-import json
 import shlex
+from functools import partial
 from math import pi, tan
 from pathlib import Path
 from typing import Any
 
 import pytest
-from click.testing import CliRunner, Result
+from command_line import answer_of, invoke
 
 from impact_predictor.bags.read import topics
-from impact_predictor.cli import main
 from impact_predictor.commands.simulate import EXAMPLES, STICKS
 from impact_predictor.parameters.file import read_values
 from impact_predictor.scenarios.truth import TRUTH_TOPIC
@@ -21,20 +20,13 @@ ROOT = Path(__file__).parents[1]
 SCENE = ROOT / "config/wheel.yaml"
 
 
-@pytest.fixture(autouse=True)
-def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    monkeypatch.chdir(tmp_path)
-    return tmp_path
+pytestmark = pytest.mark.usefixtures("folder")
 
-
-def run(*arguments: str) -> Result:
-    return CliRunner().invoke(main, ("simulate", "wheel", *arguments), terminal_width=100)
+run = partial(invoke, "simulate", "wheel")
 
 
 def simulated(*arguments: str) -> Any:
-    result = run(*arguments, "--json")
-    assert result.exit_code == 0, result.stderr
-    return json.loads(result.stdout)
+    return answer_of(run(*arguments, "--json"))
 
 
 def test_the_example_of_a_point_mass_ends_with_its_known_rates() -> None:
@@ -77,9 +69,7 @@ def test_the_replay_of_its_bag_with_the_shipped_scene_finds_every_impact(folder:
     assert result.exit_code == 0, result.stderr
     assert "Bag: wheel.mcap" in result.stdout
     assert TRUTH_TOPIC in topics(folder / "wheel.mcap")
-    replay = CliRunner().invoke(main, ("replay", "wheel.mcap", "--params", str(SCENE), "--json"))
-    assert replay.exit_code == 0, replay.stderr
-    truth = json.loads(replay.stdout)["truth"]
+    truth = answer_of(invoke("replay", "wheel.mcap", "--params", str(SCENE), "--json"))["truth"]
     assert (truth["touchdowns"], truth["missed"], truth["false"], truth["mode_accuracy"]) == (6, 0, 0, 1.0)
     # The motion is followed to 1e-11, stamps are whole ns.
     assert truth["median_velocity_error"] < 1e-8
