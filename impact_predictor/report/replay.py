@@ -35,6 +35,13 @@ TWO_LINES: Final = (
     "upper error is that of the whole twist, the lower one that in the impact plane."
 )
 
+LANDING_SAID: Final = (
+    "Of each landing: when it was first announced, the error of the time announced "
+    f"{1e3 * LEAD_TIMES[0]:.0f} ms ahead, and what an impact would be with the speed that the foot had in its last "
+    "sample in the air: its mode, the impulse of the foot, below it that of the other feet, and the change of the "
+    "body's velocity. A foot that brakes until it lands gives less; NO_IMPACT is then announced."
+)
+
 
 def print_replay(console: Console, result: Result, every: bool = False) -> None:
     """Print the touchdowns (the first scored ones, or `every` one), the errors and what became of the samples."""
@@ -45,6 +52,7 @@ def print_replay(console: Console, result: Result, every: bool = False) -> None:
     if (bodies := bodies_table(result, rows)) is not None:
         _show(console, bodies)
     if landings:
+        say(console, LANDING_SAID)
         listed = landings if every else landings[:MOST_ROWS]
         _show(console, landings_table(listed), *more(len(landings) - len(listed), "landing"))
     if listed := others if every else of_each_kind(others):
@@ -167,9 +175,9 @@ def landings_table(landings: Sequence[TouchdownRow]) -> Table:
         Column("foot", lambda row: f"{row.foot} {row.point or ''}".rstrip(), left=True),
         Column("first\nms\nahead", lambda row: _ms(row.ahead, 0)),
         Column(f"error\nms, at\n{1e3 * LEAD_TIMES[0]:.0f} ms", lambda row: _ms(row.time_errors[0], 1, "+")),
-        Column("predicted\nmode", lambda row: row.mode.name, left=True),
-        Column("foot's\nspeed\nm/s", lambda row: fixed(row.landing_speed, 3)),
-        Column("\n".join(["N s at\nfoot,\nothers", *bounds]), _impulses),
+        Column("speed\nm/s", lambda row: fixed(row.landing_speed, 3)),
+        Column("mode\nat that\nspeed", lambda row: row.landing_mode.name if row.landing_mode else NONE, left=True),
+        Column("\n".join(["impulse\nN s", *bounds]), _impulses),
         Column("body's\nchange\nm/s", lambda row: fixed(row.velocity_change and hypot(*row.velocity_change[:2]), 3)),
         Column("late\nms", lambda row: _ms(row.late, 1, "+"), optional=True),
         Column("force\nagrees", lambda row: {True: "yes", False: "no"}.get(row.confirmed, NONE), optional=True),

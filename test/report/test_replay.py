@@ -11,7 +11,7 @@ from rich.table import Table
 from touchdowns import LANDED, LANDING, SCORE
 
 from impact_predictor.bags.replay import Result, Settled
-from impact_predictor.mechanics.types import Flag, Twist
+from impact_predictor.mechanics.types import Flag, Mode, Twist
 from impact_predictor.prediction.types import Status
 from impact_predictor.report.replay import (
     MOST_OF_A_KIND,
@@ -253,8 +253,20 @@ def test_the_table_of_landings_fits_the_terminal_and_no_number_is_cut_off(
 def test_what_rounds_to_nothing_has_no_sign_and_what_nobody_announced_has_no_time() -> None:
     still, missed = landed(1.0, history=((0.1, -1e-9),), speed=-1e-9), landed(2.0, history=())
     first, _, second, _ = shown(landings_table(rows_of([still, missed])), 80).splitlines()[-4:]
-    assert first.split()[2:6] == ["100", "0.0", "PIVOT_SLIDE", "0.000"]
+    assert first.split()[2:6] == ["100", "0.0", "0.000", "PIVOT_SLIDE"]
     assert second.split()[2:4] == ["-", "-"]
+
+
+def test_a_landing_has_the_mode_of_the_impact_whose_impulse_stands_beside_it() -> None:
+    """What is announced of a foot that brakes until it lands is another: no impact."""
+    braked = landed(1.0)
+    touchdown = braked.score.touchdown._replace(mode=Mode.NO_IMPACT)
+    braked = braked._replace(score=braked.score._replace(touchdown=touchdown))
+    (row,) = rows_of([braked])
+    *_, line, _ = shown(landings_table([row]), 80).splitlines()
+    assert line.split()[4:7] == ["0.123", "PIVOT_SLIDE", "5.00"]
+    assert "NO_IMPACT" not in shown(landings_table([row, row._replace(landing_mode=None)]), 80)
+    assert "A foot that brakes until it lands gives less" in printed(WALK._replace(settled=(braked,)))
 
 
 def test_the_head_of_the_impulses_says_which_bound_they_are() -> None:
