@@ -12,7 +12,7 @@ from typing import Final, NamedTuple
 
 from ..mechanics.types import Mode, Twist
 from ..stamps import NANOSECONDS
-from .course import Course, Pose, between
+from .course import STEP, Course, Pose, between
 from .planar import Posture, center_of
 from .recorded import BEFORE, RecordedTouchdown, TouchdownRecorder
 from .scene import Scene
@@ -27,7 +27,7 @@ LONGEST = 1000  # how many predictions of one touchdown are remembered
 
 LIFT: Final = 0.1
 """Contacts have lifted when their mean gap rises by more than this part of the contact tolerance between the first and
-the third frame after the touchdown."""
+the third frame after the touchdown, and by more than the steps of the predicted course may raise them."""
 
 LIFTS: Final = (Mode.PIVOT_SLIDE, Mode.PIVOT, Mode.FLIGHT), (Mode.BACK_PIVOT, Mode.FLIGHT)
 """The modes in which the old and the new contact lift."""
@@ -83,7 +83,7 @@ class SpatialScore:
         groups = self.old, () if len(self.new) == 1 and not self.old else self.new
         same = (self.told.old, self.told.new) == (self.old, self.new)
         chances = self.told.uncertainty.probabilities if same and self.told.uncertainty else None
-        least = LIFT * self.course.scene.tolerance
+        least = max(LIFT * self.course.scene.tolerance, self._chord)
         return tuple(  # type: ignore[return-value]
             Lift(
                 told=self._rise(group, self._expected) > least,
@@ -110,6 +110,15 @@ class SpatialScore:
     @cached_property
     def _expected(self) -> list[Pose]:
         return self.course.poses(self.told.after_6d, self.moments)
+
+    @property
+    def _chord(self) -> float:
+        """How far in m a point at rest may leave the support where the body turns about it along chords, as it does in
+        the steps of its course: half the square of the angle of one, times the way to the mass centre.
+        """
+        spin, center = self.told.after_6d[1], self.course.scene.center_of_mass
+        reach = max([dot(arm, arm) for arm in [add(point, center, -1.0) for point in self.course.points]], default=0.0)
+        return 0.5 * dot(spin, spin) * STEP * STEP * sqrt(reach)
 
     def _relative(self, twist: SpatialTwist) -> float:
         (linear, angular), (other, spin), before = twist, self.measured, self.told.before_6d

@@ -140,7 +140,10 @@ COMPONENTS_SAID: Final = (
     "Its components: the mean of predicted less measured ones, the slope of measured over predicted ones, and the part "
     "of the variance that is predicted (R2), beside that of simple answers; below 0 it is worse than the mean of all."
 )
-LIFTS_SAID: Final = "Do the contacts lift? They have if their mean gap grows by a tenth of the contact tolerance."
+LIFTS_SAID: Final = (
+    "Do the contacts lift? They have if their mean gap grows by a tenth of the contact tolerance, and by more than the "
+    "steps in which the predicted motion is computed."
+)
 
 
 def skill_tables(

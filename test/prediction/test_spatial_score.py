@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import replace
 from itertools import product
 from math import hypot
 from typing import NamedTuple
@@ -201,6 +202,15 @@ def test_lifts_are_told_and_measured_by_the_same_rise_of_the_gaps() -> None:
     assert (old.told, new.told) == (resting.told.after.omega < 0.0, False)
     corner = spatial_of(only_score(TOSS, samples_of(falling(), gone_on(falling(), told_after(falling())))))
     assert corner.lifts == (None, None)  # it always rises
+
+
+def test_a_contact_about_which_the_body_turns_is_told_to_stay_however_small_the_tolerance() -> None:
+    """The steps of the predicted course are chords, which leave the arc by micrometres."""
+    turning = spatial_of(only_score(SCENE, before() + after(5)))
+    exact = replace(turning, course=turning.course._replace(scene=SCENE._replace(tolerance=1e-9)))
+    old, new = exact.lifts
+    assert exact.told.after.omega < 0.0  # about the new contact
+    assert (old and old.told, new and new.told) == (True, False)
 
 
 @pytest.mark.parametrize(
