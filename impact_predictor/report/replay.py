@@ -244,10 +244,12 @@ def truth_sentences(truth: Truth) -> list[str]:
         said.append(f"Of those found, {right}; the velocities after them are {within}.")
     if truth.median_time_error is not None:
         ahead = f"{1e3 * LEAD_TIMES[0]:.0f} ms ahead"
-        said.append(f"The time predicted {ahead} is {duration(truth.median_time_error)} wrong in the median.")
+        wrong = f"{duration(truth.median_time_error)} wrong in the median"
+        said.append(f"Against the truth in the bag, the time predicted {ahead} is {wrong}.")
     if truth.unresolved:
         hidden = counted(truth.unresolved, "more impact")
-        said.append(f"{hidden} cannot be seen at this rate of samples: too soon after the one before, or too slow.")
+        why = "too soon after the one before, or too slow"
+        said.append(f"{hidden} of the truth cannot be seen at this rate of samples and do not count: {why}.")
     return said
 
 

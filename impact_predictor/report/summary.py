@@ -202,7 +202,7 @@ class Tally:
             errors = [(name, self._known[name]) for name in SIMPLE.values() if self._known[name]]
             medians = [f"{name} {percent(quantile(values, 0.5))} %" for name, values in errors]
             said += [f"Simple answers to these, in the median: {', '.join(medians)}."] if medians else []
-            said += [f"{planar.number:,} scored in the impact plane{_errors(planar)}."] if planar.number else []
+            said += [f"{planar.number:,}{of} scored in the impact plane{_errors(planar)}."] if planar.number else []
         why = [f"  {count:,} {words(reason)}: {WHY[reason]}" for reason, count in self._reasons.most_common()]
         heading = "The samples after the others do not show what the impact left, for one or several reasons each:"
         return [*said, *([heading] if why else []), *why]
@@ -218,10 +218,11 @@ class Tally:
             said += " The others came too suddenly, or the noise of base and feet hides how they come down."
         told = [said]
         if errors := [abs(error) for error in known["error"]]:
-            wrong = f"{1e3 * quantile(errors, 0.5):.1f} ms wrong in the median, by when the foot's motion ends"
+            wrong = f"{1e3 * quantile(errors, 0.5):.1f} ms wrong in the median"
             simple = [abs(error) for error in known["simple"]]
-            beside = f", the gap over its speed {1e3 * quantile(simple, 0.5):.1f} ms" if simple else ""
-            told.append(f"The time predicted {1e3 * LEAD_TIMES[0]:.0f} ms ahead is {wrong}{beside}.")
+            beside = f", a foot's gap over its speed {1e3 * quantile(simple, 0.5):.1f} ms" if simple else ""
+            against = "Against the motion of the feet as recorded, which ends when they stand"
+            told.append(f"{against}, the time predicted {1e3 * LEAD_TIMES[0]:.0f} ms ahead is {wrong}{beside}.")
         if known["impulse"]:
             speeds = f"{quantile(known['speed'], 0.5):.3f} m/s in the median, at most {max(known['speed']):.3f} m/s"
             most = f"{max(known['impulse']):.2f} N s to a foot and {max(known['change']):.3f} m/s to the body"

@@ -35,14 +35,14 @@ def test_the_truth_is_said_in_four_sentences() -> None:
         "Of those found, 75.0 % have the right mode; the velocities after them are within 1.2 % of the true ones in "
         "the median."
     )
-    assert time == "The time predicted 20 ms ahead is 1.5 us wrong in the median."
-    assert unseen.startswith("3 more impacts cannot be seen at this rate of samples")
+    assert time == "Against the truth in the bag, the time predicted 20 ms ahead is 1.5 us wrong in the median."
+    assert unseen.startswith("3 more impacts of the truth cannot be seen at this rate of samples and do not count")
 
 
 def test_of_landings_the_truth_tells_times_alone() -> None:
     assert truth_sentences(Truth(1, 0, 1, 0, None, None, 1.1e-3)) == [
         "Against the truth in the bag: 1 of 1 touchdown found, 1 false alarm.",
-        "The time predicted 20 ms ahead is 1.1 ms wrong in the median.",
+        "Against the truth in the bag, the time predicted 20 ms ahead is 1.1 ms wrong in the median.",
     ]
 
 

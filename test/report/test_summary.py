@@ -86,7 +86,7 @@ def test_touchdowns_together_count_the_scored_and_explain_the_others() -> None:
     assert Tally([whole, near]).sentences() == [
         "1 of 2 touchdowns scored by the whole twist: relative error 12.5 % in the median, 90 % below 12.5 %.",
         f"Simple answers to these, in the median: {simple}.",
-        "1 scored in the impact plane: relative error 25.0 % in the median, 90 % below 25.0 %.",
+        "1 of 2 touchdowns scored in the impact plane: relative error 25.0 % in the median, 90 % below 25.0 %.",
         "The samples after the others do not show what the impact left, for one or several reasons each:",
         "  1 not isolated: another touchdown was too near",
     ]
@@ -96,8 +96,8 @@ def test_landings_together_say_how_early_they_were_predicted_and_what_their_impa
     predicted, times, impacts = Tally([LANDED]).sentences()
     assert predicted == "1 landing of 1 foot, 1 predicted, 100 ms ahead or earlier."
     assert times == (
-        "The time predicted 20 ms ahead is 2.0 ms wrong in the median, by when the foot's motion ends, "
-        "the gap over its speed 12.0 ms."
+        "Against the motion of the feet as recorded, which ends when they stand, the time predicted 20 ms ahead is "
+        "2.0 ms wrong in the median, a foot's gap over its speed 12.0 ms."
     )
     assert impacts == (
         "Feet come down with 0.123 m/s in the median, at most 0.123 m/s; "

@@ -10,7 +10,7 @@ from ...prediction.skill import SIMPLE
 from ..skill import kind_scores
 from ..touchdowns import TouchdownRow, row_as_json
 from . import Headline, Section, page, part_words, script_inside, write_html
-from .facts import BagAnswer, ReplayFacts
+from .facts import FOUND, BagAnswer, ReplayFacts
 from .landings import landings
 from .replay import modes, velocities
 from .skill import skill
@@ -51,7 +51,7 @@ def write_demo_page(path: Path, tosses: Shown, deck: Shown, robot: Shown) -> Non
     headlines = (
         twists(live),
         told["events warned of"]._replace(question="on the deck, events warned of"),
-        told["found"]._replace(question="of the robot, landings found"),
+        told[FOUND]._replace(question="of the robot, landings found"),
     )
     title = "A cube, a crate and a robot: the next touchdown, before it happens"
     lead = "Predicted as samples came in; what happened stands beside it."

@@ -23,6 +23,9 @@ BagAnswer = Mapping[str, Any]
 NOTHING: Final = "nothing"
 """What is predicted of a true touchdown that is missed, and true of a false alarm."""
 
+FOUND: Final = "true ones found"
+"""How many of the touchdowns were predicted that happened, by the truth in a bag or the motion of feet."""
+
 LEAST_LEAD_TIME: Final = 0.02
 """Seconds before a touchdown, from which on the errors of the times are given."""
 
@@ -96,7 +99,9 @@ class ReplayFacts:
     def headlines(self) -> list[Headline]:
         """How many, how right (medians), how early and at what cost; "–" where nothing tells it."""
         scored, truth, errors, cost = self.scored, self.truth, self.velocity_errors, self.costs
+        whole = sum(row.error_6d is not None for row in scored)
         compared = f"{len(scored):,} compared with measured velocities" if scored or self.uncompared else ""
+        compared += f", {whole:,} as whole twists and the others in the impact plane alone" if whole else ""
         compared += "".join(
             f"; most of the others not, as {WHY[reason]}" for reason, _ in self.uncompared.most_common(1)
         )
@@ -104,11 +109,13 @@ class ReplayFacts:
         if truth:
             found = f"{truth['touchdowns'] - truth['missed']:,} of {truth['touchdowns']:,}"
             missed = f"{truth['missed']:,} missed, {counted(truth['false'], 'false alarm')}"
-            missed += f", {truth['unresolved']:,} more too slow or too close to be seen" if truth["unresolved"] else ""
+            if truth["unresolved"]:
+                missed += f"; {truth['unresolved']:,} more, too slow or too close to be seen, do not count"
         elif feet:
             found = f"{sum(row.time_error is not None for row in feet):,} of {len(feet):,}"
-            missed = "landings, as the feet's motion shows them"
-        right = f"median against the {'true' if truth else 'measured'} ones; 90 % below {part_words(errors.p90)}. "
+            missed = "of the landings that the feet's motion shows"
+        of = f"of {counted(errors.number, 'touchdown')} against the {'true' if truth else 'measured'} velocities"
+        right = f"median {of}; 90 % below {part_words(errors.p90)}. "
         if both := {pair: count for pair, count in self.confusion().items() if NOTHING not in pair}:
             same = sum(count for (true, predicted), count in both.items() if true == predicted)
             right += f"The mode is right in {same:,} of {sum(both.values()):,}."
@@ -124,8 +131,8 @@ class ReplayFacts:
         half, most = (time_words(one and 1e-6 * one) for one in (cost.p50, cost.p99))
         warned = [Headline("events warned of", *warned_of(self.units))] if self.units else []
         return [
-            Headline("touchdowns", f"{len(self.rows):,}" if self.rows or not self.units else "–", compared),
-            Headline("found", found, missed),
+            Headline("touchdowns predicted", f"{len(self.rows):,}" if self.rows or not self.units else "–", compared),
+            Headline(FOUND, found, missed),
             Headline("velocity error", part_words(errors.p50), right),
             Headline("time error", time_words(late.p50), f"median {span}; 90 % below {time_words(late.p90)}"),
             Headline("first ahead", first, f"median; 90 % at least {early}, the latest {latest}"),

@@ -29,13 +29,13 @@ from . import (
     script_inside,
     write_html,
 )
-from .facts import NOTHING, BagAnswer, ReplayFacts
+from .facts import FOUND, NOTHING, BagAnswer, ReplayFacts
 from .landings import landings
 from .skill import skill
 from .timeline import FALSE, MANY, MISSED, ORDER, look_of, timeline
 from .watch import watched
 
-EXPLAINED: Final = ("found", "events warned of")
+EXPLAINED: Final = (FOUND, "events warned of")
 """Of what a bag's row tells, that of which it tells more."""
 NOT_ASKED: Final = Headline("", "–", "")
 
