@@ -16,7 +16,7 @@ from ..bags.watched import DECK, FORECAST, QUANTILES, UNIT, LevelSpell, WatchLog
 from ..prediction.deck.forecast import ANGLES, LEADS
 from ..prediction.watch.levels import UNKNOWN, Level
 from ..stamps import NANOSECONDS
-from ..wording import counted
+from ..wording import counted, percent
 
 MOST: Final = 1500
 """Rows of the JSON; of a longer log it has the least and the greatest of each stretch, of units the greatest."""
@@ -107,15 +107,27 @@ def warnings_of(spells: Sequence[LevelSpell]) -> list[LevelSpell]:
 
 
 def warned_of(units: Iterable[Mapping[str, Any]]) -> tuple[str, str]:
-    """How many events of units were warned of, and how early; how many warnings were vain, in words."""
+    """How many events of units were warned of, and how early; how many warnings were vain, and the part of the time
+    that they stood, in words.
+    """
     units = list(units)
     events, warnings = ([one for unit in units for one in unit[key]] for key in ("events", "warnings"))
     leads = [one["warned_ahead"] for one in events if one["warned_ahead"] is not None]
     ahead = f"a warning had stood {median(leads):.1f} s in the median, {min(leads):.1f} s at least; " if leads else ""
     vain = f"{sum(one['vain'] for one in warnings):,} of {counted(len(warnings), 'warning')} vain"
+    share = under_warning(units)
+    stood = f"; units were under warning {percent(share)} % of the time: so many events a warning meets by chance"
     return f"{len(leads):,} of {len(events):,}" if events else "none happened", ahead + (
-        vain if warnings else "no warning"
+        vain + (stood if share is not None else "") if warnings else "no warning"
     )
+
+
+def under_warning(units: Iterable[Mapping[str, Any]]) -> float | None:
+    """The part of the time under warning, of that in which levels of units were known; None where none was."""
+    units = list(units)
+    known = sum(end - begin for unit in units for level, begin, end in unit["levels"] if level != Level.STALE.name)
+    stood = sum(one["end"] - one["begin"] for unit in units for one in unit["warnings"])
+    return stood / known if known else None
 
 
 def _stood(spells: Sequence[LevelSpell], stamp: int) -> float | None:

@@ -16,7 +16,16 @@ from impact_predictor.bags.watched import FORECAST, QUANTILES, STEP, LevelSpell,
 from impact_predictor.prediction.deck.forecast import LEADS
 from impact_predictor.prediction.watch.levels import Level
 from impact_predictor.report.page.replay import page_of_replay
-from impact_predictor.report.watch import MOST, SERIES, forecast_skill, series_of, warned_of, watch_as_json
+from impact_predictor.report.page.watch import ACROSS
+from impact_predictor.report.watch import (
+    MOST,
+    SERIES,
+    forecast_skill,
+    series_of,
+    under_warning,
+    warned_of,
+    watch_as_json,
+)
 from impact_predictor.stamps import NANOSECONDS
 
 S = NANOSECONDS
@@ -65,14 +74,20 @@ def test_events_have_how_long_a_warning_stood_and_warnings_whether_they_were_vai
     ]
     assert unit["most"] == {"slide": pytest.approx(1.0, abs=0.02), "tip": pytest.approx(0.5, abs=0.01)}
     assert unit["reported"] == {"tips_per_hour": 3.5, "edge": "port", "tip_peaks": "rayleigh"}
-    said = "a warning had stood 6.0 s in the median, 6.0 s at least; 1 of 2 warnings vain"
+    # Known for 100 s, under warning for 13 s.
+    chance = "units were under warning 13.0 % of the time: so many events a warning meets by chance"
+    said = f"a warning had stood 6.0 s in the median, 6.0 s at least; 1 of 2 warnings vain; {chance}"
     assert warned_of([unit]) == ("1 of 2", said)
+    assert under_warning([unit, unit]) == pytest.approx(0.13)
+    assert under_warning([]) is None
 
 
 def test_what_happens_before_anything_is_known_counts_for_nothing() -> None:
     late = (LevelSpell("crate", Level.STALE, 0, 30 * S), LevelSpell("crate", Level.OK, 30 * S, 100 * S))
     (unit,) = watch_as_json(log(spells=late))["units"].values()
     assert [one["stamp"] for one in unit["events"]] == [50 * S]
+    warned = unit | {"warnings": [{"begin": 65 * S, "end": 100 * S, "vain": True}]}
+    assert under_warning([warned]) == pytest.approx(0.5)
 
 
 def test_the_skill_of_a_forecast_stands_beside_that_of_simple_answers() -> None:
@@ -117,10 +132,19 @@ def test_the_page_has_deck_forecast_levels_margins_events_and_statistics() -> No
     assert drawn["layout"]["xaxis"]["anchor"] == "y4"
     near, statistics, skill = page.tables["watch"]
     assert near[1][3:5] == ["2", "1"]
+    assert (near[0][-1], near[1][-1]) == ("time under warning", "13.0 %")
     assert "The forecast at the end: no better than" in page.text
     assert "found over 0.3 s and 0.4 s." in page.text
-    assert statistics == [["unit", "tips per hour", "tip peaks"], ["crate", "3.5", "rayleigh"]]
+    assert statistics == [["of", "crate"], ["tips per hour", "3.5"], ["tip peaks", "rayleigh"]]
     assert [skill[row][:2] for row in (5, 6)] == [["roll, 5 s ahead", "0.573"], ["across, 5 s ahead", "0.100"]]
+
+
+def test_statistics_stand_in_as_many_tables_as_fit_beside_each_other() -> None:
+    watch = watch_as_json(log())
+    units = {f"crate {k}": watch["units"]["crate"] for k in range(ACROSS + 1)}
+    _, first, second, _ = PageReader(page_of_replay([answer(watch=watch | {"units": units})])).tables["watch"]
+    assert (len(first[0]), second[0]) == (ACROSS + 1, ["of", f"crate {ACROSS}"])
+    assert second[1] == ["tips per hour", "3.5"]
 
 
 def test_a_name_cannot_break_the_page() -> None:

@@ -12,6 +12,7 @@ from ...prediction.deck.forecast import ANGLES, ForecastStatus
 from ...stamps import NANOSECONDS
 from ...wording import NONE, counted, fixed, words
 from ..modes import EDGE, LEVELS, PALETTE
+from ..watch import under_warning
 from . import Cell, Chart, PageTable, Section, bars, marks, part_words, safe
 from .facts import BagAnswer
 
@@ -33,12 +34,17 @@ READING: Final = (
 TRUE: Final = "An event is a slide, lift or impact after 5 s without one, as the bag tells it."
 SEEN: Final = "The bag tells of no events: one is taken where a margin is used up after 5 s in which none was."
 NEAR: Final = "How near each unit came to an onset, and how long in s a warning, and ERROR, had stood at its events."
-VAIN: Final = "A warning, WARN or ERROR, is vain if no event begins in it."
+VAIN: Final = (
+    "A warning, WARN or ERROR, is vain if no event begins in it. Of events at any time a warning would meet the part "
+    "of the time that it stands: a warning that always stands meets all."
+)
 ERRS: Final = (
     "Root mean squares of the errors of the forecasts of the deck, angles in degrees and what is felt in m/s², beside "
     "those of what was so when it was forecast and of the mean of the record."
 )
 LAST: Final = "Statistics, as the watch reported them last; an hour is one in which the sea stays as it is."
+ACROSS: Final = 8
+"""Units that stand beside each other in a table."""
 OF_NOW: Final = frozenset(
     (
         "slide_ratio",
@@ -70,7 +76,7 @@ def watched(names: Sequence[str], answers: Sequence[BagAnswer], most: int) -> Se
         for unit, one in answer["watch"]["units"].items()
     ]
     head = ["unit", "most used: slide", "tip", "events", "warned of", "warning stood, s", "ERROR stood, s"]
-    tables = [PageTable([*head, "warnings", "vain"], rows, NEAR)]
+    tables = [PageTable([*head, "warnings", "vain", "time under warning"], rows, NEAR)]
     tables += statistics(known)
     tables += [skill_table(answer["watch"]["skill"], name if len(known) > 1 else "") for name, answer in known[:most]]
     return Section("watch", "The watch over the deck", said, [*charts, *[one for one in tables if one.rows]])
@@ -83,20 +89,20 @@ def unit_row(name: str, unit: Mapping[str, Any]) -> list[Cell | str]:
     stood = [Cell(fixed(median(of), 1), f"at least {min(of):.1f}") if of else NONE for of in leads]
     used = [f"{most:.2f}" if most < 10.0 else "above 10" for most in unit["most"].values()]
     numbers = [f"{number:,}" for number in (len(warnings), sum(one["vain"] for one in warnings))]
-    return [name, *used, f"{len(events):,}", f"{len(leads[0]):,}", *stood, *numbers]
+    return [name, *used, f"{len(events):,}", f"{len(leads[0]):,}", *stood, *numbers, part_words(under_warning([unit]))]
 
 
 def statistics(known: Sequence[tuple[str, BagAnswer]]) -> list[PageTable]:
-    """What the watch reported last of each unit, as numbers."""
+    """What the watch reported last of each unit, as numbers: a column for each, as statistics are more than units."""
     units = [(bag, *one) for bag, answer in known for one in answer["watch"]["units"].items()]
     told = dict.fromkeys(key for *_, unit in units for key in unit["reported"])
     keys = [key for key in told if key not in OF_NOW and not key.startswith("felt")]
-    rows = [
-        [f"{bag}, {name}" if len(known) > 1 else name or "the unit"]
-        + [_told(unit["reported"].get(key)) for key in keys]
-        for bag, name, unit in units
-    ]
-    return [PageTable(["unit", *map(words, keys)], rows, LAST)] if keys else []
+    tables = []
+    for some in (units[place : place + ACROSS] for place in range(0, len(units) if keys else 0, ACROSS)):
+        head = [f"{bag}, {name}" if len(known) > 1 else name or "the unit" for bag, name, _ in some]
+        rows = [[words(key), *(_told(unit["reported"].get(key)) for *_, unit in some)] for key in keys]
+        tables.append(PageTable(["of", *head], rows, LAST))
+    return tables
 
 
 def _told(value: float | str | None) -> str:
