@@ -10,7 +10,7 @@ from impact_predictor.prediction.skill import SIMPLE
 from impact_predictor.prediction.types import KINDS
 from impact_predictor.report.page.facts import ReplayFacts
 from impact_predictor.report.page.landings import landings
-from impact_predictor.report.page.skill import kinds_chart, skill_charts
+from impact_predictor.report.page.skill import ENOUGH, kinds_chart, skill_charts
 from impact_predictor.report.skill import kind_scores
 
 MS = 1_000_000
@@ -63,6 +63,11 @@ def test_contacts_of_which_yes_or_no_is_told_have_two_points() -> None:
     _, old, new = lifts.traces
     assert (old["x"], old["y"], old["text"]) == (pytest.approx((60.0,)), pytest.approx((200.0 / 3.0,)), ["30"])
     assert (new["x"], new["text"]) == ((0.0, 100.0), ["15", "15"])
+
+
+def test_whether_few_contacts_lift_is_not_drawn() -> None:
+    few = answer(touchdowns=WHOLE["touchdowns"][: ENOUGH - 1])
+    assert [chart.title for chart in skill_charts(ReplayFacts([few]))] == ["Error of the whole twist, by kind"]
 
 
 def test_landings_err_against_the_true_times_where_the_record_tells_them() -> None:

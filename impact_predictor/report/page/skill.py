@@ -12,6 +12,8 @@ from ..skill import KindScore, LiftScore, kind_scores, lift_scores, skill_tables
 from . import GREY, Chart, Section, marks, page_table, part_words, safe
 from .facts import ReplayFacts
 
+ENOUGH: Final = 10
+"""Contacts of which it is drawn whether they lift; of fewer the shares tell nothing."""
 SYMBOLS: Final = ("x-thin", "cross-thin", "triangle-up", "square", "diamond")
 """Of the simple answers, in the order of `SIMPLE`."""
 
@@ -24,9 +26,11 @@ def skill(facts: ReplayFacts) -> Section:
 
 
 def skill_charts(facts: ReplayFacts) -> list[Chart]:
-    """Errors by kind, and told probabilities of lifts against what happened; none where nothing is scored."""
+    """Errors by kind, and told probabilities of lifts against what happened; none where nothing or too little is
+    scored.
+    """
     kinds = [one for one in kind_scores(facts.scored, {}) if one.errors.number]
-    lifts = lift_scores(facts.scored)
+    lifts = [one for one in lift_scores(facts.scored) if sum(one.counts.values()) >= ENOUGH]
     return [*([kinds_chart(kinds)] if kinds else []), *([lifts_chart(lifts)] if lifts else [])]
 
 
