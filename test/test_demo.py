@@ -83,6 +83,7 @@ def test_the_demonstration_shows_tosses_that_were_played_live_a_deck_and_a_robot
     for said in ("scored by the whole twist", "Events warned of: 1 of 1", "49 of 49 touchdowns found", "old lifted"):
         assert said in printed
         assert said in page or said == "old lifted"
+    assert "more touchdowns: listed are the first of each kind that are scored, 8 at most." in printed
     assert "nothing happens" in page
     assert topics(tmp_path / "demo/predictions.mcap").keys() == {*RECORDED}
 

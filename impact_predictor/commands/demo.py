@@ -70,10 +70,10 @@ def demo(output: Path, tosses: int | None) -> None:
     from ..prediction.scene import read_scenes
     from ..report.answers import as_json
     from ..report.page.demo import Shown, live_answer, write_demo_page
-    from ..report.replay import TWO_LINES, of_each_kind, sentences_of, touchdown_table
+    from ..report.replay import CHOSEN, MEASURED_LATER, TWO_LINES, of_each_kind, sentences_of, touchdown_table
     from ..report.skill import skill_tables
     from ..report.summary import Tally
-    from ..report.table import say, show, table_of
+    from ..report.table import more, say, show, table_of
     from ..resources import find
     from .progress import compiling_is_said
 
@@ -88,7 +88,9 @@ def demo(output: Path, tosses: int | None) -> None:
     rows = read_recording(predictions)
     console.print(f"{tosses} recorded tosses of a cube, played through ROS topics", style="bold")
     say(console, TWO_LINES)
-    show(console, touchdown_table(of_each_kind(rows)[:LISTED]))
+    listed = of_each_kind(rows)[:LISTED]
+    show(console, touchdown_table(listed))
+    say(console, *more(len(rows) - len(listed), "touchdown", f"{CHOSEN}, {LISTED} at most"), MEASURED_LATER)
     for _, columns, scores in skill_tables(rows, {}):
         console.print()
         show(console, table_of(columns, scores))

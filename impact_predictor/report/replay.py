@@ -29,12 +29,19 @@ if TYPE_CHECKING:
 MOST_OF_A_KIND: Final = 4
 """Touchdowns of each kind that are listed unless all are asked for."""
 
+CHOSEN: Final = "listed are the first of each kind that are scored"
+
 TWO_LINES: Final = (
     "Of each touchdown the upper line is what was predicted last, the lower one what was measured: the speed of the "
     "mass centre, its part upwards, the rate of turning, and whether the contacts rise by what a record can show. The "
     "upper error is that of the whole twist, the lower one that in the impact plane."
 )
 
+MEASURED_LATER: Final = (
+    "A whole twist is told as it is when it is measured, some samples after the touchdown, as no sample shows it right "
+    "after that; one in the impact plane, and its error, right after it: even that of an exact simulation has in it "
+    "what gravity changes meanwhile."
+)
 LANDING_SAID: Final = (
     "Of each landing: when it was first announced, the error of the time announced "
     f"{1e3 * LEAD_TIMES[0]:.0f} ms ahead, and what an impact would be with the speed that the foot had in its last "
@@ -57,7 +64,8 @@ def print_replay(console: Console, result: Result, every: bool = False) -> None:
         _show(console, landings_table(listed), *more(len(landings) - len(listed), "landing"))
     if listed := others if every else of_each_kind(others):
         say(console, TWO_LINES)
-        _show(console, touchdown_table(listed), *more(len(others) - len(listed), "touchdown"))
+        left = more(len(others) - len(listed), "touchdown", f"{CHOSEN}; list them with --all, or read them with --json")
+        _show(console, touchdown_table(listed), *left, MEASURED_LATER)
     for sentence, columns, scores in skill_tables(others, result.recorded):
         say(console, sentence)
         _show(console, table_of(columns, scores))
@@ -162,7 +170,7 @@ def lead_time_table(errors: Sequence[SpanErrors]) -> Table:
         Column("before touchdown\nms", lambda one: f"{one.begin * 1e3:.0f} to {one.end * 1e3:.0f}"),
         Column("predictions\n", lambda one: str(one.errors.number)),
         Column("error in the plane:\nmedian %", lambda one: percent(one.errors.p50)),
-        Column("90 % below\n%", lambda one: percent(one.errors.p90)),
+        Column("90 % of them\nare below, %", lambda one: percent(one.errors.p90)),
     ]
     return table_of(columns, errors)
 

@@ -210,6 +210,13 @@ def test_some_touchdowns_of_each_kind_are_listed_and_the_skill_of_all_is_told() 
     assert of_each_kind([*corners, WHOLE, UNSCORED]) == [*corners[:MOST_OF_A_KIND], WHOLE]
 
 
+def test_below_the_touchdowns_stands_when_they_are_measured_and_how_those_that_are_listed_were_chosen() -> None:
+    settled = tuple(Settled("crate", SCORE._replace(stamp=k), None) for k in range(MOST_OF_A_KIND + 1))
+    text = printed(CARGO._replace(settled=settled))
+    assert "1 more touchdown: listed are the first of each kind that are scored; list them with --all" in text
+    assert "as no sample shows it right after that" in text
+
+
 def test_lead_times_without_predictions_have_no_error() -> None:
     errors = [SpanErrors(0.0, 0.01, Distribution(3, 0.0625, 0.125)), SpanErrors(0.01, 0.02, Distribution())]
     lines = [re.split(r"\s{2,}", line.strip()) for line in shown(lead_time_table(errors), 80).splitlines()]

@@ -41,7 +41,7 @@ QUESTIONS: Final = {
 """The questions of the report: a title, and what is asked."""
 
 CHOICE_COLUMNS: Final = (
-    Column("error of 90 %\nbelow", lambda one: f"{one['accuracy']:g}", left=True),
+    Column("nine of ten errors\nare to be below", lambda one: f"{one['accuracy']:g}", left=True),
     Column("cheapest method\non all scenes", lambda one: name_of(one) or "none", left=True),
     Column("run time", lambda one: duration(one["us"] and 1e-6 * one["us"])),
 )

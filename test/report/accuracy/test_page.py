@@ -40,7 +40,7 @@ def test_the_picture_of_a_question_has_a_point_for_each_method_on_each_scene(que
 def test_the_tables_have_the_choices_for_each_wanted_accuracy_and_the_errors_of_what_has_no_choice() -> None:
     page = read(REPORT)
     (choices,) = page.tables["touchdown"]
-    assert [row[0] for row in choices] == ["error of 90 % below", "0.01", "0.0001", "1e-06", "1e-09"]
+    assert [row[0] for row in choices] == ["nine of ten errors are to be below", "0.01", "0.0001", "1e-06", "1e-09"]
     assert {row[1] for row in choices[1:]} == {"next_touchdown, tolerance = 1e-06"}
     assert page.tables["impact"][0][-1][1] == "none"
     for used in REPORT["node"].values():
