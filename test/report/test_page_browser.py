@@ -35,6 +35,13 @@ CHARTS = """() => [...document.querySelectorAll(".chart")].map((one) => ({id: on
   drawn: one.querySelectorAll(".main-svg").length > 0, right: one.getBoundingClientRect().right}))"""
 
 
+CLEAR = """() => [...document.querySelectorAll(".ytitle")].map((title) => {
+  const end = title.getBoundingClientRect().right, ticks = title.closest(".main-svg").parentElement;
+  return Math.min(...[...ticks.querySelectorAll(".ytick text")].map((one) => one.getBoundingClientRect().left)) - end;
+})"""
+"""Pixels between each title of an axis and the leftmost of its numbers."""
+
+
 @pytest.fixture(scope="module")
 def browser() -> Iterator[Any]:
     with sync_api.sync_playwright() as playwright:
@@ -84,6 +91,13 @@ def test_the_page_draws_every_chart_inside_the_window_and_asks_no_network(
         assert page.evaluate("document.documentElement.scrollWidth") <= width
     beside = [file.with_name("plotly.min.js").as_uri()] if "/" in name else []
     assert requests == [file.as_uri(), *beside]
+
+
+def test_the_title_of_an_axis_stands_beside_its_numbers_however_long_they_are(browser: Any, folder: Path) -> None:
+    with visit(browser, folder / "report.html") as (page, _):
+        clear = page.evaluate(CLEAR)
+    assert len(clear) == 4
+    assert all(0.0 < pixels < 100.0 for pixels in clear)
 
 
 def test_text_of_a_bag_is_shown_as_text_and_nothing_of_it_is_run(browser: Any, tmp_path: Path) -> None:
