@@ -26,11 +26,11 @@ from ..mechanics.compiled import told_of_compiling
 from ..parameters.validation import Parameter, Value, check_change, foreign, is_of_every_node, parameter_of, validate
 from ..prediction.monitor import Monitor
 from ..prediction.scene import CONTACT_GEOMETRY, FEET_STATES, ODOM, TRANSFORMS, Scene, features_of, inputs_of, scenes_of
-from ..wording import listed
+from ..wording import counted, listed
 from .diagnostics import SILENT
 from .endpoints import Misfits
 from .messages import is_typed
-from .process import flaw_of_file, sentence
+from .process import flaw_of_file, overrides_of, sentence
 from .reporter import Reporter
 from .topics import BodyTopics, InputTopic
 
@@ -42,16 +42,20 @@ _TYPES: Final = frozenset(one.value for one in NodeParameter.Type)
 class PredictorNode(Node):
     """Translates between topics and the monitor of the scenes."""
 
-    def __init__(self, is_over: Callable[[], bool] = bool) -> None:
-        """Take parameters and topics as the arguments of the process say.
+    def __init__(self, is_over: Callable[[], bool] = bool, args: list[str] | None = None) -> None:
+        """Take parameters and topics as the arguments of ROS say, with which it was initialised; `args` are those again.
 
         Raises:
             InputError: a parameter is wrong.
             KeyboardInterrupt: `is_over` says so while the impact laws are compiled, which may take minutes.
         """
         try:
-            super().__init__("impact_predictor", automatically_declare_parameters_from_overrides=True)
-            self._settings = NodeParameters(self)
+            super().__init__(
+                "impact_predictor",
+                cli_args=overrides_of(args),
+                automatically_declare_parameters_from_overrides=True,
+            )
+            self._settings = NodeParameters(self, args)
             self.executor_kind = str(self._settings.values["executor"])
             self._connect(scenes_of(self._settings.values), is_over)
         except InputError:
@@ -150,7 +154,7 @@ class PredictorNode(Node):
         diagnostics.publishers = counts
         for name in diagnostics.fallen_silent(perf_counter()):
             topic = self._inputs[name].topic_name
-            why = f"{counts[name]} publish there" if counts[name] else "nobody publishes there"
+            why = f"{counted(counts[name], 'publisher')} there" if counts[name] else "nobody publishes there"
             self.get_logger().warning(f"nothing has come on {topic} for {SILENT:.0f} s: {why}")
         diagnostics.misfits = self._misfits.look()
         self._reporter.second_over()
@@ -170,8 +174,8 @@ class NodeParameters:
     what is set while it runs. `values` are those that hold now.
     """
 
-    def __init__(self, node: Node) -> None:
-        """Declare every parameter on a node that was made with those which the user gave.
+    def __init__(self, node: Node, args: list[str] | None) -> None:
+        """Declare every parameter on a node that was made with those which the user gave, in the arguments.
 
         Raises:
             InputError: the user gave an unknown parameter or a bad value, or left out one that has no default.
@@ -183,7 +187,7 @@ class NodeParameters:
         """Parameters in the place of ours that are surely meant for other nodes."""
         if all(is_of_every_node(name) or name in self.foreign for name in self._given):
             name = node.get_fully_qualified_name()
-            flaw = flaw_of_file(None, name) or "give --params-file scene.yaml, as config/cube_tosses.yaml"
+            flaw = flaw_of_file(args, name) or "give --params-file scene.yaml, as config/cube_tosses.yaml"
             raise InputError(f"no parameter of the scene was given to {name}: {flaw}")
         self.values = validate(self._given)
         for name, depth in self._given.items():

@@ -9,7 +9,7 @@ import sys
 import threading
 from collections.abc import Callable
 from functools import partial
-from itertools import pairwise
+from itertools import chain, pairwise
 from typing import TYPE_CHECKING, Any, Final
 
 from ..errors import InputError
@@ -102,12 +102,7 @@ def only_for_ros(args: list[str] | None, usage: str) -> int | None:
 
     `--help` prints the `usage`, whose first line shows a start; what does not follow `--ros-args` is refused.
     """
-    own, for_ros = [], False
-    for word in (sys.argv if args is None else args)[1:]:
-        if word in ("--ros-args", "--"):
-            for_ros = word == "--ros-args"
-        elif not for_ros:
-            own.append(word)
+    own, _ = _split(args)
     if {"-h", "--help"} & set(own):
         print(usage)
         return 0
@@ -115,6 +110,33 @@ def only_for_ros(args: list[str] | None, usage: str) -> int | None:
         start = usage.splitlines()[0].strip()
         return _refuse(f"{' '.join(own)} is not understood: every argument goes after --ros-args, as in `{start}`", 2)
     return None
+
+
+def overrides_of(args: list[str] | None) -> list[str]:
+    """The `-p` that follow the last file of the arguments, as arguments of one node.
+
+    Of one parameter rcl keeps a value of each type that the arguments give it, and rclpy takes that of the first type,
+    so that a text in the place of a number would be passed over. Arguments of a node are read by themselves, and win.
+    """
+    _, words = _split(args)
+    for k in [k for k, word in enumerate(words) if word == "--params-file"][-1:]:
+        words = words[k:]
+    given = [rule for option, rule in pairwise(words) if option in ("-p", "--param")]
+    last = {rule.partition(":=")[0]: rule for rule in given}
+    return ["--ros-args", *chain.from_iterable([("-p", rule) for rule in last.values()])]
+
+
+def _split(args: list[str] | None) -> tuple[list[str], list[str]]:
+    """The words of the arguments that are for the program, and those for ROS."""
+    own: list[str] = []
+    of_ros: list[str] = []
+    words = own
+    for word in (sys.argv if args is None else args)[1:]:
+        if word in ("--ros-args", "--"):
+            words = of_ros if word == "--ros-args" else own
+        else:
+            words.append(word)
+    return own, of_ros
 
 
 def flaw_of_file(args: list[str] | None, node: str = "impact_predictor") -> str:

@@ -107,6 +107,10 @@ def sentence_of(finished):
         (("--params-file", SCENE, "-p", "body.mass:=0.0"), "body.mass is 0.0, but"),
         (("--params-file", SCENE, "-p", "body.mass:=1"), "write 1.0 for 1"),
         (("--params-file", SCENE, "-p", "contact.friction:=.nan"), "contact.friction is nan, but"),
+        # A value of a type that rcl keeps beside the one of the file.
+        (("--params-file", SCENE, "-p", "contact.friction:=0,9"), "contact.friction is '0,9', but it must be a finite"),
+        (("--params-file", SCENE, "--param", "contact.friction:=[0.9]"), "contact.friction is [0.9], but"),
+        (("-p", "contact.friction:=0.9", "-p", "contact.friction:=high"), "contact.friction is 'high', but"),
         (("--params-file", SCENE, "-p", "body.contact_points:=[]"), "leave it out"),
         (("--params-file", SCENE, "-p", "executor:=fast"), "'single' or 'events'"),
         (("--params-file", SCENE, "-p", "qos_overrides./odom.subscription.reliability:=maybe"), "maybe"),
@@ -119,6 +123,39 @@ def test_a_bad_parameter_is_one_sentence_and_a_status_that_is_not_0(arguments, s
     finished = run_node("--ros-args", *map(str, arguments))
     assert finished.returncode == 1
     assert said in sentence_of(finished)
+
+
+@needs_ros
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("arguments", "friction"),
+    [
+        (("--params-file", "scene.yaml"), 0.3),
+        (("--params-file", "scene.yaml", "-p", "contact.friction:=0.9"), 0.9),
+        (("-p", "contact.friction:=0.9", "--params-file", "scene.yaml"), 0.3),
+        (("-p", "contact.friction:=high", "--params-file", "scene.yaml"), 0.3),
+        (("--params-file", "scene.yaml", "-p", "contact.friction:=0.8", "--param", "contact.friction:=0.9"), 0.9),
+        (("--params-file", "scene.yaml", "-p", "foot_watch:contact.friction:=0.9"), 0.3),
+    ],
+)
+def test_of_all_that_gives_a_parameter_the_last_counts_even_beside_a_section_for_this_node(
+    arguments, friction, tmp_path, monkeypatch
+):
+    import rclpy
+
+    from impact_predictor.ros.predictor_node import PredictorNode
+
+    monkeypatch.chdir(tmp_path)
+    of_this_node = "/impact_predictor:\n  ros__parameters:\n    contact.friction: 0.3\n"
+    Path("scene.yaml").write_text(f"{DRUM.read_text()}\n{of_this_node}")
+    words = ["predictor", "--ros-args", *arguments]
+    rclpy.init(args=words)
+    try:
+        node = PredictorNode(args=words)
+        assert node.get_parameter("contact.friction").value == friction
+        node.destroy_node()
+    finally:
+        rclpy.shutdown()
 
 
 @needs_ros
