@@ -43,7 +43,7 @@ class PredictorNode(Node):
     """Translates between topics and the monitor of the scenes."""
 
     def __init__(self, is_over: Callable[[], bool] = bool, args: list[str] | None = None) -> None:
-        """Take parameters and topics as the arguments of ROS say, with which it was initialised; `args` are those again.
+        """Take parameters and topics as `args` say, with which ROS was initialised too.
 
         Raises:
             InputError: a parameter is wrong.

@@ -189,6 +189,33 @@ def test_the_node_says_what_it_listens_to_what_is_not_for_it_and_where_nothing_c
     assert said.count("nothing has come on") == 1
 
 
+@needs_ros
+@pytest.mark.slow
+@pytest.mark.parametrize(("number", "said"), [(1, "1 publisher there"), (2, "2 publishers there")])
+def test_where_nothing_comes_although_somebody_publishes_the_node_says_how_many_do(number, said, capfd, monkeypatch):
+    import rclpy
+    from nav_msgs.msg import Odometry
+
+    from impact_predictor.ros.predictor_node import PredictorNode
+
+    monkeypatch.setattr("impact_predictor.ros.diagnostics.SILENT", 0.0)
+    words = ["predictor", "--ros-args", "--params-file", str(DRUM)]
+    rclpy.init(args=words)
+    try:
+        node = PredictorNode(args=words)
+        publishers = [node.create_publisher(Odometry, "odom", 1) for _ in range(number)]
+        assert node.count_publishers("odom") == len(publishers)
+        complaint, end = "", time.monotonic() + PATIENCE
+        while "nothing has come on /odom for 5 s" not in complaint:
+            assert time.monotonic() < end, complaint
+            rclpy.spin_once(node, timeout_sec=0.1)
+            complaint += capfd.readouterr().err
+        node.destroy_node()
+    finally:
+        rclpy.shutdown()
+    assert f"nothing has come on /odom for 5 s: {said}" in complaint
+
+
 def test_without_rclpy_the_node_says_in_one_sentence_what_to_do():
     code = "import sys; sys.modules['rclpy'] = None\nfrom impact_predictor.ros.node import main; sys.exit(main())"
     finished = run_node(code=code)
