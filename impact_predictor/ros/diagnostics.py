@@ -46,6 +46,22 @@ def shown(figures: Iterable[tuple[str, str, object]]) -> dict[str, str]:
     return {key: format(value, form) for key, form, value in figures if value is not None}
 
 
+class _Errors:
+    """The relative errors of the touchdowns that were scored: how many, and the median of the last ones."""
+
+    def __init__(self) -> None:
+        self.number = 0
+        self._last: deque[float] = deque(maxlen=REMEMBERED)
+
+    def add(self, error: float) -> None:
+        self.number += 1
+        self._last.append(error)
+
+    @property
+    def median(self) -> float | None:
+        return median(self._last) if self._last else None
+
+
 class Diagnostics:
     """Counts what happens to the messages, judges it, and reports it as a diagnostic_msgs/DiagnosticArray.
 
@@ -80,8 +96,8 @@ class Diagnostics:
         self._silent: set[str] = set()
         self._last_stamps: dict[str, int] = {}
         self._touchdowns = 0
-        self._scored = 0
-        self._errors: deque[float] = deque(maxlen=REMEMBERED)
+        self._whole = _Errors()
+        self._in_plane = _Errors()
         self._second: tuple[float, float, float | None] = 0.0, 0.0, None
         self._costs: list[float] | None = None
         self._refused_now: Counter[Refusal] = Counter()
@@ -160,9 +176,10 @@ class Diagnostics:
         """Count a touchdown of a body, which has happened."""
         self._body = body
         self._touchdowns += 1
+        if score.spatial is not None and not score.leftover_6d:
+            self._whole.add(score.spatial.error)
         if score.scored and score.relative_error is not None:
-            self._scored += 1
-            self._errors.append(score.relative_error)
+            self._in_plane.add(score.relative_error)
 
     def second_over(self, now: float) -> bool:
         """Sum up the second that ends, and begin the next."""
@@ -204,8 +221,10 @@ class Diagnostics:
             ("cost_us.update.max", ".1f", longest),
             ("cost_us.total.median", ".1f", total),
             ("touchdowns", "d", self._touchdowns),
-            ("touchdowns.scored", "d", self._scored),
-            ("touchdowns.median_relative_error", ".4f", median(self._errors) if self._errors else None),
+            ("touchdowns.scored_6d", "d", self._whole.number),
+            ("touchdowns.median_relative_error_6d", ".4f", self._whole.median),
+            ("touchdowns.scored", "d", self._in_plane.number),
+            ("touchdowns.median_relative_error", ".4f", self._in_plane.median),
         ]
         for feet in self.feet.values():
             figures += feet.figures()

@@ -1,4 +1,8 @@
+from math import hypot
+
 import pytest
+from test_score import only_score
+from test_spatial_score import HALF, TOSS, falling, gone_on, samples_of, told_after
 
 from impact_predictor.mechanics.types import Flag, Mode, Twist
 from impact_predictor.native import form
@@ -170,6 +174,18 @@ def test_touchdowns_are_counted_and_the_error_is_the_median_of_the_scored(diagno
     assert values["touchdowns"] == "4"
     assert values["touchdowns.scored"] == "3"
     assert values["touchdowns.median_relative_error"] == "0.0700"
+
+
+def test_touchdowns_scored_by_the_whole_twist_have_a_count_and_a_median_beside_those_of_the_plane(diagnostics):
+    toss = falling()
+    for faster in (0.1, 0.3, 0.2):
+        diagnostics.settled("cube", only_score(TOSS, samples_of(toss, gone_on(toss, told_after(toss), (faster, 0, 0)))))
+    diagnostics.settled("cube", scored(0.05, is_scored=False))
+    values = report(diagnostics).values
+    assert (values["touchdowns"], values["touchdowns.scored_6d"], values["touchdowns.scored"]) == ("4", "3", "0")
+    error = 0.2 / hypot(*toss.velocity, *(HALF * toss.spin))
+    assert float(values["touchdowns.median_relative_error_6d"]) == pytest.approx(error, rel=1e-3)
+    assert "touchdowns.median_relative_error" not in values
 
 
 def test_of_several_inputs_the_one_that_is_missing_or_silent_is_named():

@@ -4,15 +4,19 @@ Samples are random with a fixed seed; numbers must come through exactly, since n
 """
 
 import random
+from math import hypot
 from typing import Any
 
 import numpy as np
 import pytest
 from messages_of_rosbags import TYPES, TYPESTORE, header, odometry, padded, random_sample, serialize
+from test_score import run
+from test_spatial_score import HALF, TOSS, falling, gone_on, samples_of, told_after
 
 from impact_predictor.mechanics.bodies import plate
 from impact_predictor.mechanics.impact import solve_impact
 from impact_predictor.mechanics.types import ContactState, Flag, Mode, Twist
+from impact_predictor.prediction.predictor import Predictor
 from impact_predictor.prediction.types import (
     Covariance,
     Leftover,
@@ -297,6 +301,26 @@ def test_a_score_leaves_out_what_was_not_measured(measured: Twist | None, error:
     assert status.message.endswith("not scored: TOO_SHORT")
     assert ("measured.vx" in status.values) == (measured is not None)
     assert ("relative_error" in status.values) == (error is not None)
+
+
+@pytest.mark.parametrize(
+    ("frames_after", "whole", "in_plane"),
+    [
+        (6, "error 0.023", "nothing to compare, not scored: ONE_POINT"),
+        (2, "nothing to compare, not scored: TOO_SHORT", "nothing to compare, not scored: ONE_POINT|TOO_SHORT"),
+    ],
+)
+def test_a_score_of_a_corner_that_struck_says_how_right_the_whole_twist_was(
+    frames_after: int, whole: str, in_plane: str
+) -> None:
+    toss, faster = falling(), (0.03, -0.02, 0.01)
+    predictor = Predictor(TOSS)
+    answers = run(predictor, samples_of(toss, gone_on(toss, told_after(toss), faster))[: 10 + frames_after])
+    (score,) = [*(answer.score for answer in answers if answer.score is not None), *predictor.finish()]
+    assert hypot(*faster) / hypot(*toss.velocity, *(HALF * toss.spin)) == pytest.approx(0.0232, abs=1e-4)
+    status = read(encode_score(a_prediction()._replace(score=score)))
+    said = f"by the whole twist {whole}; in the impact plane {in_plane}"
+    assert status.message == f"FLIGHT predicted 4.0 ms ahead; {said}"
 
 
 def test_a_stamp_beyond_the_range_of_a_message_stays_at_its_end() -> None:

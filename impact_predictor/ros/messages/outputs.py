@@ -7,7 +7,7 @@ from importlib.util import find_spec
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 from ...mechanics.types import Flag, Mode
-from ...prediction.types import Foot, Landing, Prediction, Score, Status
+from ...prediction.types import Foot, Landing, Leftover, Prediction, Score, Status
 from ...stamps import NANOSECONDS
 from ..cdr import LITTLE_ENDIAN_HEADER, OK, WARN, StatusBytes, diagnostic_array, diagnostic_status, pairs_of
 from .fields import FOOT, LANDING, MARGINS, PREDICTION, SCORE, TOUCHDOWN, UNCERTAINTY
@@ -138,8 +138,16 @@ def encode_score(prediction: Prediction) -> bytes | None:
 
 def _score_message(score: Score) -> str:
     announced = f"{text(score.touchdown.mode)} predicted {score.touchdown.lead_time * 1e3:.1f} ms ahead"
-    error = "nothing to compare" if score.relative_error is None else f"error {score.relative_error:.3f}"
-    return f"{announced}, {error}" + ("" if score.scored else f", not scored: {text(score.leftover)}")
+    in_plane = _comparison(score.relative_error, score.leftover)
+    if score.leftover_6d is Leftover.MOVING_CONTACTS:
+        return f"{announced}, {in_plane}"
+    whole = _comparison(None if score.spatial is None else score.spatial.error, score.leftover_6d)
+    return f"{announced}; by the whole twist {whole}; in the impact plane {in_plane}"
+
+
+def _comparison(error: float | None, leftover: Leftover) -> str:
+    said = "nothing to compare" if error is None else f"error {error:.3f}"
+    return f"{said}, not scored: {text(leftover)}" if leftover else said
 
 
 def _landing_message(landing: Landing) -> str:
