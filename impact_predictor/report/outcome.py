@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from itertools import groupby
 from operator import itemgetter
 from typing import Final
 
@@ -96,7 +97,8 @@ def _sentences(outcome: Outcome, *, alone: bool) -> Iterator[str]:
     yield f"  {meaning(outcome.mode)}."
     if outcome.segments:
         yield "  While the impulse grows:" if outcome.law == "path" else "  In all:"
-    for segment in outcome.segments:
+    # From compression to restitution the contacts may go on as they did.
+    for segment, _ in groupby(outcome.segments):
         # Forwards is along the contact's tangent (normal_y, -normal_x).
         old, new = (_STATES[state] for state in segment)
         yield f"  {segment}  " + (f"the contact {new}" if alone else f"the old contact {old}, the new one {new}")

@@ -45,6 +45,14 @@ def test_the_table_has_velocities_impulses_and_energy() -> None:
     assert "++  the old contact slides forwards, the new one slides forwards" in text
 
 
+def test_what_contacts_do_is_said_once_where_they_go_on_so_after_compression() -> None:
+    tall = plate(length=1.0, height=1.6, mass=10.0, friction=0.2, restitution=0.3)
+    before = tall.turning(-1.0)
+    outcome = solve_impact(tall, before)
+    assert outcome.segments == ("O+", "O+")
+    assert printed(tall, before, outcome).count("O+  the old contact is open, the new one slides forwards") == 1
+
+
 def test_the_nearest_other_modes_are_told() -> None:
     text = printed(PLATE, BEFORE, solve_impact(PLATE, BEFORE))
     assert "STOP: friction of the contacts by +0.2" in text
