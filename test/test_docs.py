@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import re
+import shlex
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -13,6 +16,7 @@ ROOT = Path(__file__).parents[1]
 PAGES = [*ROOT.glob("*.md"), *ROOT.glob("docs/*.md"), *ROOT.glob("examples/*/README.md")]
 CODE = re.compile(r"^```python\n(.*?)^```", re.MULTILINE | re.DOTALL)
 LINK = re.compile(r"\]\(([^)#\s]*)(?:#([^)\s]+))?\)")
+PRINTS = re.compile(r"^    python (-c .*|-m pydoc .*)$", re.MULTILINE)
 SAID = re.compile(r"^print\(.*\)  # (.*)$", re.MULTILINE)
 EXAMPLES = [
     pytest.param(code, id=f"{page.stem}-{number}")
@@ -36,6 +40,24 @@ def test_an_example_prints_what_stands_beside_it(
 
 def _rounded(number: re.Match[str]) -> str:
     return repr(round(float(number[0]), 9) + 0.0)
+
+
+@pytest.mark.parametrize(
+    ("page", "said"),
+    [
+        ("parameters", ["contact.friction", "contact.merge 0.0015"]),
+        ("prediction", ["lead_time", "before.vx, .vy", "late s after the plan"]),
+        ("api", ["solve_impact(body"]),
+    ],
+)
+def test_what_the_site_fills_in_is_printed_at_once_by_the_commands_of_its_page(page: str, said: list[str]) -> None:
+    commands = PRINTS.findall((ROOT / f"docs/{page}.md").read_text())
+    printed = [
+        subprocess.run([sys.executable, *shlex.split(one)], cwd=ROOT, capture_output=True, text=True, check=True).stdout
+        for one in commands
+    ]
+    for words in said:
+        assert words in "".join(printed)
 
 
 @pytest.mark.parametrize("page", [pytest.param(page, id=str(page.relative_to(ROOT))) for page in PAGES])
