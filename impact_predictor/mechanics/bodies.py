@@ -137,7 +137,10 @@ def fraction(**values: Number) -> None:
 def refuse(values: dict[str, Number], allowed: Callable[[Any], Any], wanted: str) -> None:
     """Raise InputError where a value, or an element of an array, is not allowed."""
     for name, value in values.items():
-        good = allowed(value)
+        try:
+            good = allowed(value)
+        except TypeError:
+            raise InputError(f"{name} is {value!r}; give {wanted}") from None
         if good is not True and not (good is not False and good.all()):
             bad: Any = value if good is False else value[~good].flat[0]  # type: ignore[index]
             raise InputError(f"{name} is {bad}; give {wanted}")

@@ -62,6 +62,8 @@ def test_a_body_turns_about_its_old_contact():
     [
         (lambda: plate(0.0, 1.0, 1.0, 0.3), "length is 0.0"),
         (lambda: plate(1.0, math.inf, 1.0, 0.3), "height is inf"),
+        (lambda: plate("1", 1.0, 1.0, 0.3), "length is '1'; give a finite number above 0"),
+        (lambda: plate(1.0, 1.0, 1.0, None), "friction is None"),
         (lambda: plate(1.0, 1.0, -1.0, 0.3), "mass is -1.0"),
         (lambda: plate(1.0, 1.0, 1.0, -0.3), "friction is -0.3"),
         (lambda: plate(1.0, 1.0, 1.0, 0.3, restitution=1.1), "restitution is 1.1"),
