@@ -169,8 +169,10 @@ def test_every_example_works(folder: Path, body: str) -> None:
         (["plate", "--plot", "x.gif"], "give a name that ends in .png or .svg"),
         (["plate", "--plot", "no/x.png"], "the folder of no/x.png does not exist"),
         (["plate", "-o", "taken"], "taken is there and is not an output of impact_predictor"),
+        (["rod", "-o", "rod.txt"], "rod.txt is no bag; give a name that ends in .mcap, or a folder without an ending"),
+        (["cylinder", "--gamma", "95"], "--gamma is 95, for both edges; give degrees between 0 and 90"),
         (
-            ["cylinder", "--gamma", "95"],
+            ["cylinder", "--gamma", "95", "--gamma-new", "95"],
             "--gamma and --gamma-new have the sum 190; give degrees between 0 and 180",
         ),
     ],

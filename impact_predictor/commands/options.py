@@ -111,6 +111,8 @@ def edges_of(gamma: float, gamma_new: float | None) -> tuple[float, float]:
     """The central angles of both edges in rad; InputError where no cylinder lies on such edges."""
     ahead = gamma if gamma_new is None else gamma_new
     if not 0.0 < gamma + ahead < 180.0:
+        if gamma_new is None:
+            raise InputError(f"--gamma is {gamma:g}, for both edges; give degrees between 0 and 90")
         raise InputError(f"--gamma and --gamma-new have the sum {gamma + ahead:g}; give degrees between 0 and 180")
     return radians(gamma), radians(ahead)
 

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 import click
 
+from ..errors import InputError
 from ..mechanics.bodies import refuse
 from .options import F, json_flag, number, text, together
 from .progress import writing
@@ -21,10 +23,18 @@ RATE: Final = 1000.0
 """Samples of a bag for each second, unless another rate is given."""
 
 
+def _bag(context: click.Context, option: click.Parameter, name: str | None) -> str | None:
+    """The name of a bag, unless it ends as a file of another kind; `run.2` is a folder."""
+    ending = Path(name or "").suffix
+    if ending != ".mcap" and ending[1:2].isalpha():
+        raise InputError(f"{name} is no bag; give a name that ends in .mcap, or a folder without an ending")
+    return name
+
+
 def bag_option(truth: str) -> Callable[[F], F]:
     """The option that asks for a bag with what is true."""
     says = f"Write a bag for `replay`, with {truth}: NAME.mcap is one file, any other name a rosbag2 folder."
-    return text("-o", "--output", "BAG", says)
+    return text("-o", "--output", "BAG", says, callback=_bag)
 
 
 RATES_AS_MAGNITUDES: Final = "Print JSON, rates as magnitudes"
