@@ -88,6 +88,8 @@ def test_the_friction_of_simulated_plates_comes_back_within_its_interval_though_
     assert answer["held_out_error"]["median"] < 0.02 < answer["given_error"]["median"]
     assert answer["bags"] == [*plates, "nowhere.mcap"]
     assert answer["touchdowns"] >= len(plates)
+    fitted_to = f"{answer['touchdowns']} touchdowns and 1,000 resamples of them"
+    assert f"note: fitting coefficients to {fitted_to}" in result.stderr.splitlines()
 
 
 class Written(NamedTuple):

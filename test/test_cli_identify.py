@@ -59,7 +59,11 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.mark.usefixtures("few_resamples")
 def test_the_json_tells_the_true_body_and_the_scene_file_has_it(folder: Path) -> None:
     scene, output = str(folder / "scene.yaml"), str(folder / "identified.yaml")
-    answer = answer_of(run(str(folder / "box.mcap"), "--params", scene, "-o", output, "--json"))
+    result = run(str(folder / "box.mcap"), "--params", scene, "-o", output, "--json")
+    answer = answer_of(result)
+    assert result.stderr.splitlines()[-1] == (
+        "note: fitting mass centre and inertia to 60 motions and 200 resamples of them"
+    )
     assert (answer["motions"], answer["repeated_motions"]) == (60, 0)
     assert list(answer["body"]) == ["ixx", "iyy", "izz", "ixy", "ixz", "iyz", "center_x", "center_y", "center_z"]
     assert all(one["told"] and one["low"] <= one["value"] <= one["high"] for one in answer["body"].values())

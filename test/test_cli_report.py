@@ -49,6 +49,11 @@ def test_the_terminal_shows_what_to_choose_and_what_the_node_uses() -> None:
     assert result.stdout.splitlines()[-1] == "Page: out/report.html"
 
 
+def test_of_how_many_methods_and_scenes_it_measures_is_said_at_the_start() -> None:
+    note = f"note: measuring error and run time of {accuracy.number_of_rows()} pairs of a method and a scene\n"
+    assert run("--json", "--quick").stderr == note
+
+
 def test_with_json_nothing_else_is_printed_and_no_file_written(folder: Path) -> None:
     result = run("--json", "--quick")
     fields = json.loads(result.stdout)

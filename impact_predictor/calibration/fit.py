@@ -93,7 +93,7 @@ def calibrate(
     lengths is the loss of the spatial median: a touchdown that rigid theory does not explain pulls no more than others.
     Intervals are those of the bootstrap over blocks (percentiles), the same for the same `seed`; each is wider by what
     changes the mean error by a thousandth of the speed. A coefficient that the touchdowns do not tell stays as it was.
-    `tell` takes now and then how many impacts are solved.
+    `tell` takes now and then how many impacts are solved, from 0.
 
     Raises:
         InputError: there are too few touchdowns, or their bodies have several frictions, restitutions or merge times.
@@ -108,6 +108,7 @@ def calibrate(
         raise InputError(
             f"{bodies} have frictions, restitutions or merge times of their own; calibrate with a scene for each"
         )
+    tell(0)
     given = Coefficients(*known.pop())
     fit = CoefficientSearch(touchdowns, blocks_of(records), given, seed, tell)
     given_errors = lengths(fit.solver.misses(given))

@@ -77,7 +77,7 @@ def identify(
     """Find mass centre and inertia of the body of a scene, with 1, 3 or 6 moments.
 
     Motions that are one, turned about the vertical, count once. Intervals are those of the bootstrap over motions
-    (percentiles), the same for the same `seed`. `tell` takes how many fits are done.
+    (percentiles), the same for the same `seed`. `tell` takes how many fits are done, from 0.
 
     Raises:
         InputError: there are too few impacts of a single point, or the inertia that is found is that of no body.
@@ -85,6 +85,7 @@ def identify(
     single = distinct(scene, motions)
     records = [MotionRecord(scene, motion) for motion in single]
     struck, owner = _single_points(scene, records)
+    tell(0)
     lever = float(np.mean([np.sqrt(one.points.var(axis=0).sum()) for one in struck]))
     equations = Impulses(scene, struck, moments)
     whole, every = np.ones(len(struck)), np.ones(moments + 3, dtype=bool)

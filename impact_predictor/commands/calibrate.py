@@ -64,11 +64,12 @@ def calibrate(
     from ..bags.find import bags_of
     from ..bags.replay import remapping
     from ..calibration.fit import calibrate as fit
+    from ..calibration.search import RESAMPLES
     from ..calibration.touchdowns import touchdowns_of
     from ..files import named
     from ..prediction.monitor import Monitor
     from ..report import calibration as report
-    from ..wording import words
+    from ..wording import counted, words
     from .progress import compiling_is_said, progress
 
     scenes, topics = read_scenes(params), remapping(remap)
@@ -83,8 +84,9 @@ def calibrate(
     said = [f"Friction of {body or 'the body'}, from when it held and when it slid: {seen[body]}." for body in seen]
     records = [touchdowns_of(result.settled, scenes) for result in results]
     scores = [settled.score for result in results for settled in result.settled]
+    fitted_to = f"{counted(sum(map(len, records)), 'touchdown')} and {RESAMPLES:,} resamples of them"
     try:
-        with progress("fit", "impacts") as tell, compiling_is_said():
+        with progress("fit", "impacts", note=f"fitting coefficients to {fitted_to}") as tell, compiling_is_said():
             calibration = fit(records, inertia, seed, tell)
     except InputError as error:
         if reasons := report.unscored(scores):

@@ -53,9 +53,11 @@ def identify(
     from ..bags.replay import remapping
     from ..calibration.identify import identify as find
     from ..calibration.motions import RecordingMonitor
+    from ..calibration.search import RESAMPLES
     from ..files import named
     from ..prediction.scene import inertia_matrix
     from ..report import identification as report
+    from ..wording import counted
     from .progress import progress
 
     scenes, topics = read_scenes(params), remapping(remap)
@@ -66,7 +68,8 @@ def identify(
     scene = next(iter(scenes.values()))
     motions = [motion for monitor in monitors for motion in monitor.motions]
     moments = MOMENTS.get(tensor, 1 if scene.inertia == inertia_matrix([scene.inertia[0][0]]) else 6)
-    with progress("fit", "fits") as tell:
+    fitted_to = f"{counted(len(motions), 'motion')} and {RESAMPLES:,} resamples of them"
+    with progress("fit", "fits", note=f"fitting mass centre and inertia to {fitted_to}") as tell:
         found = find(scene, motions, moments, seed, tell)
     if output is not None:
         write_scene(params, output, report.changes_of(found))

@@ -1,4 +1,4 @@
-"""What is said on standard error while work goes on: how far it is, that numba compiles, and what Ctrl-C leaves."""
+"""What is said on standard error while work goes on: what is done, how far, that numba compiles, what Ctrl-C left."""
 
 from __future__ import annotations
 
@@ -27,13 +27,16 @@ NAMED: Final = 3
 class ProgressBar:
     """A bar that shows how much is done."""
 
-    def __init__(self, progress: Progress, task: TaskID) -> None:
-        """Show it when the work has taken its time."""
-        self._progress, self._task = progress, task
+    def __init__(self, progress: Progress, task: TaskID, note: str) -> None:
+        """Show it when the work has taken its time; say a note, if any, when the work begins."""
+        self._progress, self._task, self._note = progress, task, note
         self._began = perf_counter()
 
     def __call__(self, done: int) -> None:
         """Show how much is done."""
+        if self._note:
+            click.echo(f"note: {self._note}", err=True)
+            self._note = ""
         self._progress.update(self._task, completed=done)
         if not self._progress.live.is_started and perf_counter() - self._began > PATIENCE:
             self._progress.start()
@@ -45,8 +48,11 @@ class ProgressBar:
 
 
 @contextmanager
-def progress(label: str, unit: str = "samples", total: int | None = None) -> Iterator[ProgressBar]:
-    """A bar while work goes on that takes more than a second, on a terminal; gone when it is done."""
+def progress(label: str, unit: str = "samples", total: int | None = None, note: str = "") -> Iterator[ProgressBar]:
+    """A bar while work goes on that takes more than a second, on a terminal; gone when it is done.
+
+    Elsewhere a note says what is done, as soon as the bar is first told how much.
+    """
     from rich import progress as rich
     from rich.console import Console
 
@@ -65,7 +71,7 @@ def progress(label: str, unit: str = "samples", total: int | None = None) -> Ite
         disable=not console.is_terminal,
     )
     try:
-        yield ProgressBar(bar, bar.add_task(label, total=total))
+        yield ProgressBar(bar, bar.add_task(label, total=total), "" if console.is_terminal else note)
     finally:
         bar.stop()
 

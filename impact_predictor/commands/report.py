@@ -48,7 +48,10 @@ def report(output: Path | None, quick: bool, as_json: bool) -> None:
     from .progress import compiling_is_said, progress
 
     command = "impact-predictor report" + (" --quick" if quick else "") + (f" -o {folder}" if folder else " --json")
-    with compiling_is_said(), progress("report", "methods") as tell:
+    number = accuracy.number_of_rows()
+    note = f"measuring error and run time of {number} pairs of a method and a scene"
+    with compiling_is_said(), progress("report", "methods", number, note) as tell:
+        tell(0)
         fields = accuracy.report(accuracy.QUICK if quick else 1.0, command, tell)
     if folder is not None:
         write(folder, fields)

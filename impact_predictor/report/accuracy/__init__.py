@@ -86,19 +86,29 @@ QUICK: Final = 0.15
 """Part of the problems that a quick report has."""
 
 
+PROBLEMS: Final = {TOUCHDOWN: 32, IMPACT: 200, SPATIAL: 60}
+"""How many problems each question asks of a scene."""
+
+
+def questions() -> dict[str, Any]:
+    """The modules that ask the questions of `PROBLEMS`."""
+    from . import impacts, spatial, touchdowns
+
+    return {TOUCHDOWN: touchdowns, IMPACT: impacts, SPATIAL: spatial}
+
+
+def number_of_rows() -> int:
+    """How many rows a report has, quick or not."""
+    return sum(len(asked.SCENES) * len(asked.METHODS) for asked in questions().values()) + len(VARIANTS)
+
+
 def report(part: float, command: str, tell: Callable[[int], None] = lambda done: None) -> dict[str, Any]:
     """Measure everything, on a part of the problems, for a command; the report as its JSON has it.
 
     `tell` is told how many rows are done.
     """
-    from . import impacts, spatial, touchdowns
-
-    work = chain(
-        rows_of(touchdowns, round(32 * part)),
-        rows_of(impacts, round(200 * part)),
-        rows_of(spatial, round(60 * part)),
-        toss_rows(),
-    )
+    asked = questions()
+    work = chain(*[rows_of(asked[name], round(count * part)) for name, count in PROBLEMS.items()], toss_rows())
     rows: list[AccuracyRow] = []
     for row in work:
         rows.append(row)
@@ -107,7 +117,6 @@ def report(part: float, command: str, tell: Callable[[int], None] = lambda done:
     made |= {name: version(name) if find_spec(name) else "not installed" for name in ("numpy", "scipy", "numba")}
     made["machine"] = f"{platform.processor() or platform.machine()}, {os.cpu_count()} cores"
     made["date"] = datetime.now(timezone.utc).date().isoformat()
-    asked: Any = {TOUCHDOWN: touchdowns, IMPACT: impacts, SPATIAL: spatial}
     found = {name: conclusions(rows, name, question.USED) for name, question in asked.items()}
     drawn = [scene for question in asked.values() for scene in question.SCENES]
     return {

@@ -95,6 +95,7 @@ def test_a_small_report_has_a_row_for_each_method_on_each_scene_and_makes_a_page
     done = list[int]()
     report = json.loads(json.dumps(accuracy.report(0.02, "a command", done.append), allow_nan=False))
     assert done == list(range(1, len(report["rows"]) + 1))
+    assert len(done) == accuracy.number_of_rows()
     rows = {(row["question"], row["scene"], row["method"], row["setting"]) for row in report["rows"]}
     assert len(rows) == len(report["rows"])
     questions: Any = (touchdowns, TOUCHDOWN), (impacts, IMPACT), (spatial, SPATIAL)
