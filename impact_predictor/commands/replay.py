@@ -45,7 +45,7 @@ if TYPE_CHECKING:
 @text(
     "--report",
     "FILE",
-    "Write a page about all bags into one .html file; any other name is a folder with a page for each bag too.",
+    "Write a page about all bags into one .html file; a name without an ending is a folder with one of each bag too.",
 )
 @text(
     "--table",
