@@ -21,6 +21,12 @@ def listed(names: Sequence[str], most: int = 20, last: str = "") -> str:
     return ", ".join(names) if not last or len(names) < 2 else f"{', '.join(names[:-1])} {last} {names[-1]}"
 
 
+def plain(text: str, most: int = 200) -> str:
+    """The beginning of what a library says of damaged bytes, in one line that can be printed."""
+    line = "".join([one if one.isprintable() else "?" for one in " ".join(text.split())])
+    return line if len(line) <= most else f"{line[:most]} ..."
+
+
 def words(name: str) -> str:
     """The name of an enum's member as text."""
     return name.lower().replace("_", " ")

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from impact_predictor.wording import counted, duration, fixed, percent, words
+from impact_predictor.wording import counted, duration, fixed, percent, plain, words
 
 
 @pytest.mark.parametrize(
@@ -16,6 +16,8 @@ from impact_predictor.wording import counted, duration, fixed, percent, words
     [
         (lambda number: counted(number, "bag"), {0: "0 bags", 1: "1 bag", 2: "2 bags", 1234: "1,234 bags"}),
         (words, {"PIVOT_SLIDE": "pivot slide"}),
+        # What is found in damaged bytes is shown in one line, and not all of it.
+        (plain, {"no\n header": "no header", "text '\x14s'": "text '?s'", 300 * "a": 200 * "a" + " ..."}),
         # Percents have a decimal, and small ones two digits.
         (percent, {None: "-", 0.0: "0.0", 0.1234: "12.3", 1.0: "100.0"}),
         (percent, {0.00996: "1.0", 0.0051234: "0.51", 1.23e-9: "1.2e-07"}),

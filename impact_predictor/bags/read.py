@@ -12,7 +12,7 @@ from typing import Any, Final, NamedTuple
 
 from ..errors import InputError
 from ..ros.messages import MalformedMessage
-from ..wording import counted, listed
+from ..wording import counted, listed, plain
 from .chunks import UNKNOWN, ZSTD_MAGIC, BagChannel, Expansion, Flaw, decompress_file, decompressed_message
 from .find import COMPRESSED, files_of, storage_of
 from .mcap_file import McapFile
@@ -188,7 +188,7 @@ class Bag:
 
     def _reason(self, one: MessageFile, error: Exception, lost: int) -> str:
         """What is wrong, where, and what is lost by it."""
-        said = [" ".join(str(error).split()).rstrip(".") or type(error).__name__]
+        said = [plain(str(error)).rstrip(".") or type(error).__name__]
         if isinstance(error, Flaw) and error.place > 0:
             said[0] += f", at byte {error.place:,} of {one.size:,}"
         if len(self._files) > 1:

@@ -25,6 +25,9 @@ MEASURED = slice(1, 4)
 
 LONGEST = 1000  # how many predictions of one touchdown are remembered
 
+LEAST_SPEED: Final = 1e-100
+"""m/s: below it what a twist was before a touchdown is rounding, and parts of it would overflow."""
+
 LIFT: Final = 0.1
 """Contacts have lifted when their mean gap rises by more than this part of the contact tolerance between the first and
 the third frame after the touchdown, and by more than the steps of the predicted course may raise them."""
@@ -124,7 +127,7 @@ class SpatialScore:
         (linear, angular), (other, spin), before = twist, self.measured, self.told.before_6d
         error = self._speed(add(linear, other, -1.0), add(angular, spin, -1.0))
         scale = self._speed(*before)
-        return error / scale if scale > 0.0 else 0.0
+        return error / scale if scale >= LEAST_SPEED else 0.0
 
     def _speed(self, linear: Vector3, angular: Vector3) -> float:
         return sqrt(dot(linear, linear) + self.size * self.size * dot(angular, angular))
@@ -281,7 +284,7 @@ class Pending:
         measured = self._twist(scene, last)
         score = score._replace(measured=measured, leftover=leftover)
         scale = hypot(last.before.vx, last.before.omega * last.half_distance)
-        if not last.old or scale == 0.0:
+        if not last.old or scale < LEAST_SPEED:
             return score
         errors = []
         for stamp, touchdown in self.track.answers:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import random
 import re
+import sqlite3
 from collections.abc import Callable
 from itertools import pairwise
 from pathlib import Path
@@ -184,6 +185,14 @@ def test_a_chunk_that_is_damaged_does_not_matter_where_no_wanted_topic_is_in_it(
     wanted = {topic: name for topic, name in WANTED.items() if topic != "/cube/odom"}
     assert list(read_messages(whole, wanted)) == polygons
     assert read_before(whole)[1]
+
+
+def test_bytes_that_are_no_text_do_not_get_into_the_sentence_about_them(tmp_path: Path) -> None:
+    with sqlite3.connect(sqlite(tmp_path)) as database:
+        database.execute("UPDATE message_definitions SET encoded_message_definition = CAST(x'80140a41' AS TEXT)")
+    with pytest.raises(InputError, match="SQLite finds it damaged") as refused:
+        topics(tmp_path / "bag")
+    assert str(refused.value).isprintable()
 
 
 def test_a_damaged_page_of_sqlite_stops_the_reading_there(tmp_path: Path) -> None:

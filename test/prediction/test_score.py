@@ -13,9 +13,10 @@ from scipy.integrate import solve_ivp
 from impact_predictor.mechanics.impact import solve_impact
 from impact_predictor.mechanics.types import Contact, Twist, TwoPointBody
 from impact_predictor.prediction.checks import PAUSE
+from impact_predictor.prediction.planar import posture_of
 from impact_predictor.prediction.predictor import Predictor
 from impact_predictor.prediction.scene import Scene
-from impact_predictor.prediction.score import LONGEST
+from impact_predictor.prediction.score import LONGEST, Pending, Track
 from impact_predictor.prediction.types import Geometry, Leftover, Prediction, Sample, Score, Status, Vector3
 
 PERIOD = 5_000_000
@@ -301,6 +302,19 @@ def rocking(stamp: int, edge: int, angle: float, omega: float) -> Sample:
     linear = (float(velocity @ (cosine, sine)), 0.0, float(velocity @ (-sine, cosine)))
     orientation = 0.0, -math.sin(0.5 * angle), 0.0, math.cos(0.5 * angle)
     return Sample(stamp, "map", "rocker", (-rx, 0.0, -rz), orientation, linear, (0.0, -omega, 0.0), (), ())
+
+
+def test_what_is_but_rounding_before_a_touchdown_is_no_speed_of_which_an_error_is_a_part() -> None:
+    track = Track()
+    told = only_score(SCENE, before() + after(4)).touchdown
+    track.add(0, told._replace(before=Twist(2e-323, 0.0, 0.0)), 1.0)
+    pending = Pending(track, 0)
+    for sample in after(4):
+        pending.add(sample, posture_of(SCENE, BLOCK, sample))
+    score = pending.score(SCENE)
+    assert score.measured == pytest.approx(AFTER, abs=CLOSE)
+    assert score.relative_error is None
+    assert not score.scored
 
 
 def test_touchdowns_shortly_after_one_another_are_both_scored() -> None:

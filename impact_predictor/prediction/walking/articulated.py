@@ -37,7 +37,7 @@ class ArticulatedMachine:
         self.body.armature = self._drives.armature
         self.unknown: tuple[str, ...] = ()
         """Joints that were told last and that the model does not know."""
-        self._names: tuple[str, ...] = ()
+        self._names: tuple[str, ...] | None = None
         self._order: list[int] = []
         self._status = Status.NO_GEOMETRY
         solve_spatial_impact(np.eye(3), ContactPoints([ORIGIN], 0.0), NOTHING[:3])  # compiled as that of RigidMachine

@@ -117,6 +117,11 @@ def test_efforts_that_are_missing_tell_no_force(frog, efforts):
     assert frog.forces_of(joints, (0.0, 0.0, -9.81)) is None
 
 
+def test_a_first_message_without_joints_is_refused_as_a_later_one(frog):
+    assert frog.geometry_of(Joints(7, (), (), ())) is Status.WRONG_JOINTS
+    assert struck(frog) is Status.NO_GEOMETRY
+
+
 def test_before_any_joints_there_is_no_response_but_a_status(frog):
     assert struck(frog) is Status.NO_GEOMETRY
 
