@@ -47,7 +47,7 @@ def _rounded(number: re.Match[str]) -> str:
     [
         ("parameters", ["contact.friction", "contact.merge 0.0015"]),
         ("prediction", ["lead_time", "before.vx, .vy", "late s after the plan"]),
-        ("api", ["solve_impact(body"]),
+        ("api", ["solve_impact(", "Input that no body can have gives Flag.INVALID_INPUT"]),
     ],
 )
 def test_what_the_site_fills_in_is_printed_at_once_by_the_commands_of_its_page(page: str, said: list[str]) -> None:
