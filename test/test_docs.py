@@ -16,7 +16,7 @@ ROOT = Path(__file__).parents[1]
 PAGES = [*ROOT.glob("*.md"), *ROOT.glob("docs/*.md"), *ROOT.glob("examples/*/README.md")]
 CODE = re.compile(r"^```python\n(.*?)^```", re.MULTILINE | re.DOTALL)
 LINK = re.compile(r"\]\(([^)#\s]*)(?:#([^)\s]+))?\)")
-PRINTS = re.compile(r"^    python (-c .*|-m pydoc .*)$", re.MULTILINE)
+PRINTS = re.compile(r"^    (?:(\w+=\w+) )?python (-c .*|-m pydoc .*)$", re.MULTILINE)
 SAID = re.compile(r"^print\(.*\)  # (.*)$", re.MULTILINE)
 EXAMPLES = [
     pytest.param(code, id=f"{page.stem}-{number}")
@@ -47,14 +47,20 @@ def _rounded(number: re.Match[str]) -> str:
     [
         ("parameters", ["contact.friction", "contact.merge 0.0015"]),
         ("prediction", ["lead_time", "before.vx, .vy", "late s after the plan"]),
-        ("api", ["solve_impact(", "Input that no body can have gives Flag.INVALID_INPUT"]),
+        ("api", ["solve_impact(body", "Input that no body can have gives Flag.INVALID_INPUT"]),
     ],
 )
 def test_what_the_site_fills_in_is_printed_at_once_by_the_commands_of_its_page(page: str, said: list[str]) -> None:
     commands = PRINTS.findall((ROOT / f"docs/{page}.md").read_text())
     printed = [
-        subprocess.run([sys.executable, *shlex.split(one)], cwd=ROOT, capture_output=True, text=True, check=True).stdout
-        for one in commands
+        subprocess.run(
+            ["env", *setting.split(), sys.executable, *shlex.split(one)],
+            cwd=ROOT,
+            capture_output=True,
+            text=True,
+            check=True,
+        ).stdout
+        for setting, one in commands
     ]
     for words in said:
         assert words in "".join(printed)
