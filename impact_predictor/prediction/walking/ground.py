@@ -40,6 +40,7 @@ NEIGHBOUR: Final = 0.1  # m: the ground is as high here as at a foothold that is
 FAR: Final = 5.0  # squares of that distance, or standard deviations, beyond which nothing is told
 ROUGH: Final = 0.2  # contact tolerances by which levels are taken to scatter until footholds show it ...
 GUESSED: Final = 0.3  # ... and how much that counts beside one
+ROUNDING: Final = 1e-15  # of one less a number near one: a foothold's error is no smaller part of the scatter
 
 
 class GroundLevel:
@@ -120,7 +121,7 @@ class Relief:
         """The level at a place, over the datum there."""
         trend, unsure = self._trend(u, v)
         square = self._square + LEAST.gap**2
-        error, precision, off = self._error / square, 1.0, 0.0
+        error, precision, off = max(self._error / square, ROUNDING), 1.0, 0.0
         for one, datum in self._footholds if error < 1.0 else ():  # else they tell nothing but the plane
             x, y = one.u - u, one.v - v
             far = (x * x + y * y) / NEIGHBOUR**2

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import exp
+from math import exp, isfinite
 
 import pytest
 
@@ -25,3 +25,12 @@ def test_beside_a_foothold_the_ground_comes_back_to_the_plane_as_kriging_with_a_
     # Of a single neighbour that is so much like the place nothing but this part counts, however surely it is known.
     assert above(0.0) > 0.005
     assert above(apart * NEIGHBOUR) / above(0.0) == pytest.approx(exp(-apart * apart), rel=1e-9)
+
+
+def test_under_a_foothold_lies_its_level_however_far_levels_scatter() -> None:
+    relief = Relief(tolerance=1e-6)
+    for u, level in ((0.0, 0.0), (1.0, 1e12)):
+        relief.add(Foothold(u, 0.0, level, 1, 0), 0.0, first=True)
+    found = relief.at(0.0, 0.0)
+    assert found.height == pytest.approx(0.0, abs=1.0)  # a rounding of 1e12
+    assert isfinite(found.deviation)
