@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     "-o",
     "--output",
     "NAME",
-    "Write the predictions: NAME.mcap is one file, any other name a rosbag2 folder; with several bags, "
+    "Write the predictions: NAME.mcap is one file, a name without an ending a rosbag2 folder; with several bags, "
     "a folder with one file for each. The folder that it is in must be there.",
 )
 @click.option("--markers", is_flag=True, help="Write the markers for RViz and Foxglove too, into the output.")

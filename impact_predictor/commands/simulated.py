@@ -33,7 +33,7 @@ def _bag(context: click.Context, option: click.Parameter, name: str | None) -> s
 
 def bag_option(truth: str) -> Callable[[F], F]:
     """The option that asks for a bag with what is true."""
-    says = f"Write a bag for `replay`, with {truth}: NAME.mcap is one file, any other name a rosbag2 folder."
+    says = f"Write a bag for `replay`, with {truth}: NAME.mcap is one file, a name without an ending a rosbag2 folder."
     return text("-o", "--output", "BAG", says, callback=_bag)
 
 
