@@ -3,22 +3,17 @@
     python benchmarks/bench_predictor.py [RUNS]
 
 Each run goes over the whole record; of each sample the fastest run counts, in the thread's own time, so that other
-programs disturb little. The messages are decoded as they come, as in the node, but only the predictor is timed. What a
-part of it costs is what is saved where a recording of its answers answers in its place; what one impact costs is told
-by `bench_spatial.py`. On the deck the cost of its tracker (`Deck.at`, at the stamp of the body) is part of the
-sample's; what a message of the deck costs is told apart.
+programs disturb little. The messages are decoded as they come, as in the node, but only the predictor is timed. On the
+deck the cost of its tracker (`Deck.at`, at the stamp of the body) is part of the sample's; what a message of the deck
+costs is told apart. What one impact costs is told by `bench_spatial.py`.
 """
 
 from __future__ import annotations
 
 import sys
 from collections.abc import Sequence
-from contextlib import ExitStack
 from pathlib import Path
 from time import thread_time_ns
-from types import ModuleType
-from typing import Any, NamedTuple
-from unittest.mock import patch
 
 import numpy as np
 from deck_motions import Motions, motions
@@ -30,9 +25,7 @@ from rich.table import Table
 from impact_predictor.bags.read import BagMessage, read_messages
 from impact_predictor.parameters.file import read_parameters
 from impact_predictor.parameters.validation import validate
-from impact_predictor.prediction import spatial
 from impact_predictor.prediction.deck.tracker import Deck
-from impact_predictor.prediction.draws import Draws
 from impact_predictor.prediction.predictor import Predictor
 from impact_predictor.prediction.scene import Scene
 from impact_predictor.prediction.types import Status
@@ -43,20 +36,6 @@ TOSSES = ROOT / "examples/cube_tosses/cube_tosses.mcap"
 PARAMETERS = ROOT / "config/cube_tosses.yaml"
 
 KINDS = ("no touchdown ahead", "in flight", "standing")
-
-
-class Part(NamedTuple):
-    """A part of the predictor: a function, and the module that calls it, or the class that has it."""
-
-    name: str
-    module: ModuleType | type
-    function: str
-
-
-PARTS = (
-    Part("the motion until the touchdown", spatial, "fall"),
-    Part("what draws say of the impact", Draws, "drawn"),
-)
 
 
 def run(scene: Scene, record: Sequence[BagMessage]) -> tuple[list[float], list[int]]:
@@ -75,31 +54,9 @@ def run(scene: Scene, record: Sequence[BagMessage]) -> tuple[list[float], list[i
     return costs, kinds
 
 
-def fastest(scene: Scene, record: Sequence[BagMessage], runs: int, *known: Part) -> NDArray[np.float64]:
-    """Microseconds of each sample in its fastest run, with the answers of `known` parts taken from a recording."""
-    answers: dict[str, list[Any]] = {part.name: [] for part in known}
-
-    def recording(part: Part) -> Any:
-        work = getattr(part.module, part.function)
-
-        def recorded(*arguments: Any) -> Any:
-            answers[part.name].append(work(*arguments))
-            return answers[part.name][-1]
-
-        return recorded
-
-    def replaying(part: Part) -> Any:
-        following = iter(answers[part.name])
-        return lambda *_: next(following)
-
-    costs = []
-    for number in range(-1 if known else 0, runs):
-        with ExitStack() as stack:
-            for part in known:
-                stand_in = recording(part) if number < 0 else replaying(part)
-                stack.enter_context(patch.object(part.module, part.function, stand_in))
-            costs.append(run(scene, record)[0])
-    return np.asarray(np.min(costs[1 if known else 0 :], axis=0))
+def fastest(scene: Scene, record: Sequence[BagMessage], runs: int) -> NDArray[np.float64]:
+    """Microseconds of each sample in its fastest run."""
+    return np.asarray(np.min([run(scene, record)[0] for _ in range(runs)], axis=0))
 
 
 def by_kind(title: str, costs: NDArray[np.float64], kinds: list[int]) -> Table:
@@ -147,20 +104,16 @@ def deck_table(runs: int) -> Table:
 
 
 def main() -> int:
-    """Print what a sample costs in all, by what the body does, and by part."""
+    """Print what a sample costs, by what the body does."""
     runs = int(sys.argv[1]) if len(sys.argv) > 1 else 3
     scene = Scene.from_parameters(validate(read_parameters(PARAMETERS)))
     record = list(read_messages(TOSSES, {"/cube/odom": ODOMETRY, "/cube/contact_geometry": POLYGON}))
     kinds = run(scene, record)[1]
     whole = fastest(scene, record, runs)
-    parts = Table("part, as shipped", "us per sample")
-    for part in PARTS:
-        parts.add_row(part.name, f"{np.mean(whole - fastest(scene, record, runs, part)):.1f}")
-    parts.add_row("all else", f"{np.mean(fastest(scene, record, runs, *PARTS)):.1f}")
     certain = scene._replace(samples=0)
     without = by_kind("without draws", fastest(certain, record, runs), run(certain, record)[1])
     shipped = by_kind(f"as shipped, with {scene.samples} draws", whole, kinds)
-    Console(width=120).print(shipped, without, parts, deck_table(runs))
+    Console(width=120).print(shipped, without, deck_table(runs))
     return 0
 
 

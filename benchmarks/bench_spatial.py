@@ -21,7 +21,7 @@ from rich.table import Table
 from impact_predictor import Body, ContactPoints, solve_spatial_impact
 from impact_predictor.mechanics.compiled import without_numba
 from impact_predictor.mechanics.impact import spatial_body
-from impact_predictor.mechanics.impact.spatial import STEPS, make_bodies, solvers, workspace
+from impact_predictor.mechanics.impact.spatial import STEPS, solver, workspace
 from impact_predictor.mechanics.impact.spatial_body import ANSWER, BODY, CONTACT, RESULT
 from impact_predictor.native import as_python
 from impact_predictor.prediction.draws import DRAW_STEPS
@@ -60,7 +60,7 @@ def law_of(n: int, law: Callable[..., None]) -> Callable[[], object]:
 
 def draws_of(n: int) -> Callable[[], object]:
     """The compiled law over draws of all bodies, which differ in what contacts are still open, as `law_of`."""
-    law, source = solvers().bodies, np.random.default_rng(2)
+    law, source = solver(), np.random.default_rng(2)
     drawn = np.repeat(problems(n), DRAWS, axis=0)
     gaps = np.abs(source.normal(size=(len(drawn), n)) * DEVIATION)
     drawn[:, BODY:].reshape(-1, n, CONTACT)[:, :, 11] = gaps - gaps.min(axis=1)[:, None]
@@ -77,9 +77,9 @@ def calls_of(n: int) -> Callable[[], object]:
 def main() -> None:
     """Time all of them in turns and print the table."""
     laws = {
-        "law, numba": solvers().bodies,
-        "law, machine code": without_numba(make_bodies, spatial_body),
-        "law, Python": without_numba(make_bodies, as_python(spatial_body.__name__.partition(".")[2])),
+        "law, numba": solver(),
+        "law, machine code": without_numba(spatial_body.strike_all),
+        "law, Python": without_numba(as_python(spatial_body.__name__.partition(".")[2]).strike_all),
     }
     functions = {(name, n): law_of(n, law) for n in (1, 2, 4, 8) for name, law in laws.items()}
     functions |= {(f"law, {DRAWS} draws", n): draws_of(n) for n in (1, 2, 4, 8)}

@@ -20,7 +20,7 @@ from impact_predictor.mechanics.types import ContactState
 from impact_predictor.native import as_python
 from impact_predictor.report.accuracy import problems, spatial
 from impact_predictor.report.modes import PALETTE
-from impact_predictor.report.plot import headline, picture
+from impact_predictor.report.plot import picture
 
 spatial_path, BODY_LAW = (as_python(f"mechanics.impact.{name}") for name in ("spatial_path", "spatial_body"))
 
@@ -59,13 +59,18 @@ def along(body: Body, contacts: ContactPoints, twist: NDArray[np.float64], steps
         solved.append(tuple(np.array(one) for one in (before, velocity, impulse)))
         return done
 
-    plain = law.Solvers(*(without_numba(make, BODY_LAW) for make in (law.make_bodies, law.make_mechanism)))
-    with patch.object(spatial_path, "sweep", recorded), patch.object(law, "solvers", lambda: plain):
+    plain = without_numba(BODY_LAW.strike_all)
+    with patch.object(spatial_path, "sweep", recorded), patch.object(law, "solver", lambda: plain):
         solve_spatial_impact(body, contacts, twist, steps=steps)
     first = solved[0][0]
     impulses = np.cumsum([np.zeros_like(first), *(impulse for _, _, impulse in solved)], axis=0)
     velocities = np.array([first, *(velocity for _, velocity, _ in solved)])
     return impulses.reshape(len(impulses), -1, 3), velocities.reshape(len(velocities), -1, 3)
+
+
+def headline(figure: Any, text: str) -> None:
+    """Write what a figure says above it."""
+    figure.suptitle(text, x=0.01, ha="left", fontweight="bold", fontsize=11)
 
 
 def draw_path(file: Path) -> None:

@@ -22,10 +22,11 @@ PREFIX = "native_"
 _COMPILED = {
     "mechanics.impact": "answer contacts path_law rates restitution solve spatial_body spatial_path total_law",
     "mechanics.motion": (
-        "engine equations events falling felt integrate phases pivot reactions slip spatial_problem stances"
+        "engine equations events falling felt integrate phases pivot reactions slip spatial spatial_problem stances"
     ),
     "prediction": (
-        "checks course cylinder impact motion_recorder planar points predictor recorded scatter spatial vectors"
+        "checks course cylinder impact motion_recorder planar points predictor recorded scatter spatial spatial_impact "
+        "vectors"
     ),
     "prediction.deck": "frame motion window",
     "prediction.walking": (

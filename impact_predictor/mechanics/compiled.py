@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Collection, Iterator, Sequence
 from contextlib import contextmanager
 from functools import cache
@@ -27,59 +28,61 @@ Function = TypeVar("Function", bound=Callable[..., object])
 
 
 def compiled(
-    make: Callable[..., Function],
-    modules: Sequence[ModuleType],
-    inlined: Callable[[object], bool],
-    *given: object,
-    nogil: bool = False,
+    function: Function, used: Sequence[ModuleType], inlined: Callable[[object], bool], nogil: bool = False
 ) -> Function | None:
-    """The function that `make` makes, compiled; None where numba is not installed.
+    """A function of law code, compiled; None where numba is not installed.
 
-    It may call the functions of `modules`; those that are `inlined` become a part of their callers. What was compiled
-    is kept where a folder can be written, under the name that `make` is given and binds in its function: the digest of
-    the modules' text. `make` takes what else is `given`, too. Of a function with `nogil` several threads run at once.
+    It calls functions of the modules `used` besides its own; those that are `inlined` become a part of their callers.
+    What was compiled is kept where a folder can be written. Of a function with `nogil` several threads run at once.
     """
     try:
         from numba import njit
         from numba.extending import register_jitable
     except ImportError:
         return None
+    modules = *used, sys.modules[function.__module__]
     for module in modules:
         for _, part in getmembers(module, isfunction):
             if part.__module__ == module.__name__:
                 register_jitable(forceinline=inlined(part))(part)
-    function = make(sha256("".join(map(getsource, modules)).encode()).hexdigest(), *given)
+    text = sha256("".join(map(getsource, modules)).encode()).hexdigest()
+
+    def law(*given: object) -> object:
+        text  # noqa: B018  numba keeps what it compiled under the values that are bound here
+        return function(*given)
+
+    law.__qualname__ = function.__name__  # which names the files of what is kept
     # Divisions are as in C: law code never divides by zero.
     try:
-        return cast(Function, njit(function, cache=True, error_model="numpy", nogil=nogil))
+        return cast(Function, njit(law, cache=True, error_model="numpy", nogil=nogil))
     except RuntimeError:  # no folder to keep the compiled code in
-        return cast(Function, njit(function, error_model="numpy", nogil=nogil))
+        return cast(Function, njit(law, error_model="numpy", nogil=nogil))
 
 
 def door(
-    make: Callable[[str, Any], Callable[..., Any]],
-    law: ModuleType,
+    function: Callable[..., Any],
     used: Sequence[ModuleType] = (),
     inlined: Collection[Callable[..., object]] = (),
 ) -> Callable[..., Any]:
-    """The function that `make` makes of a module of law code, compiled if that can be.
+    """A function of law code, which fills the arrays that it is given, compiled if that can be.
 
-    It calls functions of the modules `used`, too; the functions `inlined` become a part of their callers. Without numba
-    it is machine code, or runs as Python.
+    It calls functions of the modules `used` besides its own; the functions `inlined` become a part of their callers.
+    Without numba it is machine code, or runs as Python.
     """
-    modules = [as_python(module.__name__.partition(".")[2]) for module in (*used, law)]
+    read = as_python(function.__module__.partition(".")[2])
+    modules = [as_python(module.__name__.partition(".")[2]) for module in used]
     names = {function.__name__ for function in inlined}
-    function = compiled(make, modules, lambda part: getattr(part, "__name__", "") in names, modules[-1])
-    return without_numba(make, law) if function is None else function
+    found = compiled(getattr(read, function.__name__), modules, lambda part: getattr(part, "__name__", "") in names)
+    return without_numba(function) if found is None else found
 
 
-def without_numba(make: Callable[[str, Any], Callable[..., Any]], law: ModuleType) -> Callable[..., Any]:
-    """The function that `make` makes of a module of law code, which fills the arrays that it is given.
+def without_numba(function: Callable[..., Any]) -> Callable[..., Any]:
+    """A function of law code without numba, which fills the arrays that it is given.
 
     As machine code it runs on vectors, as Python on lists, which are faster there than arrays. What it takes as `work`
     it only works with: that is not copied.
     """
-    function, flat = make("", law), vectors if is_compiled(law.__name__) else lists
+    flat = vectors if is_compiled(function.__module__) else lists
     names = list(signature(function).parameters)
     scratch: dict[int, Any] = {}  # of each size
 

@@ -18,7 +18,7 @@ from ..mechanics.compiled import without_numba
 from ..mechanics.impact import spatial_body
 from ..mechanics.impact.answer import mode_of
 from ..mechanics.impact.solve import MODES, number_of
-from ..mechanics.impact.spatial import STEPS, flags_named, make_bodies, workspace
+from ..mechanics.impact.spatial import STEPS, flags_named, workspace
 from ..mechanics.impact.spatial_body import ANSWER, RESULT
 from ..mechanics.motion import PlanarState, next_strike
 from ..mechanics.motion.support import FeltSupport, FixedSupport
@@ -50,7 +50,7 @@ still balance over an edge of a support that leans by 30 degrees."""
 BLOCKED: Final = 1e9
 """What does not turn has so many times the inertia about the axis."""
 
-SOLVE: Final = without_numba(make_bodies, spatial_body)
+SOLVE: Final = without_numba(spatial_body.strike_all)
 """The law code: a cylinder that slides along its axis is rare, and needs nothing compiled."""
 
 

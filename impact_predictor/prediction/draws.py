@@ -120,7 +120,7 @@ class Draws:
 @cache
 def teller() -> Callable[..., None]:
     """The law code that reads the answers of draws, compiled, where it can be, and loaded."""
-    tell = door(make_teller, drawn, inlined=(drawn.over,))
+    tell = door(drawn.tell, inlined=(drawn.over,))
     tell(
         1,
         0,
@@ -129,16 +129,6 @@ def teller() -> Callable[..., None]:
         np.ones(21),
         np.empty(LIFTS + 2 + ANSWER + RESULT + SCRATCH),
     )
-    return tell
-
-
-def make_teller(law_code: str, law: Any) -> Callable[..., None]:
-    """The function that reads answers; numba keeps what it compiled under the value of `law_code`."""
-
-    def tell(n: int, standing: int, problem: Any, answers: Any, given: Any, told: Any) -> None:
-        law_code  # noqa: B018
-        law.tell(n, standing, problem, answers, given, told)
-
     return tell
 
 

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from itertools import repeat
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..mechanics.impact.solve import number_of
-from ..mechanics.impact.spatial import STATES, STEPS, flags_named, solvers, workspace
+from ..mechanics.impact.spatial import STATES, STEPS, flags_named, solver, workspace
 from ..mechanics.impact.spatial_body import ANSWER, BODY, CONTACT, RESULT
 from ..mechanics.impact.spatial_path import NEARS
 from ..mechanics.types import Flag
@@ -88,7 +88,8 @@ class SpatialImpactModel:
         problem, drawn = self._problem(collision, now), None
         positions = [add(collision.position, arm) for arm in collision.arms]
         if self._draws is None:
-            answers, flags = np.empty((1, ANSWER + RESULT * len(collision.points))), np.empty(1, np.int64)
+            answers: Any = np.empty((1, ANSWER + RESULT * len(collision.points)))
+            flags: Any = np.empty(1, np.int64)
             self._solve(problem[None], answers, flags)
             answer, notes = answers[0].tolist(), int(flags[0])
         else:
@@ -153,7 +154,7 @@ class SpatialImpactModel:
         """Fill in the answers to problems with as many contacts each."""
         scene, n = self._scene, (problems.shape[1] - BODY) // CONTACT
         how = self._law, scene.merge, hardly(scene), steps
-        solvers().bodies(n, problems, *how, answers, notes, *workspace(n))
+        solver()(n, problems, *how, answers, notes, *workspace(n))
 
     def _stopped(self, problem: NDArray[np.float64], mean: list[float], least: float) -> list[float]:
         """A mean answer of draws in which no contact that has closed approaches by more than `least`, in m/s.

@@ -86,11 +86,11 @@ def test_without_numba_the_same_code_gives_the_same_bits(kind, law, monkeypatch)
     _, body, twist = problems_of(kind, np.random.default_rng(8), 50)
     compiled = solve_impacts(body, twist, law)
     monkeypatch.setitem(sys.modules, "numba", None)  # an import of it fails
-    batch.filler.cache_clear()
+    batch.chunk_solver.cache_clear()
     try:
         plain = solve_impacts(body, twist, law)
     finally:
-        batch.filler.cache_clear()
+        batch.chunk_solver.cache_clear()
     assert [field.tobytes() for field in plain] == [field.tobytes() for field in compiled]
 
 
@@ -162,8 +162,8 @@ def test_an_array_with_a_number_that_no_body_can_have_is_refused_with_that_numbe
 
 
 READ_ONLY = """
-from impact_predictor.mechanics.impact.batch import filler
-fill = filler()
+from impact_predictor.mechanics.impact.batch import chunk_solver
+fill = chunk_solver()
 print(type(fill).__module__.split(".")[0], fill.stats.cache_path)
 """
 
@@ -177,7 +177,7 @@ def test_an_installation_in_which_nothing_can_be_written_works_too(tmp_path):
     nowhere = tmp_path / "nowhere"
     nowhere.write_text("a file, in which no folder can be made")
     # A file where numba would make its folder beside the code: that holds for root too.
-    (copy / "mechanics" / "impact" / "__pycache__").write_text("")
+    (copy / "mechanics" / "__pycache__").write_text("")
     environment = {**os.environ, "PYTHONPATH": str(tmp_path), "HOME": str(nowhere), "XDG_CACHE_HOME": str(nowhere)}
     environment.pop("NUMBA_CACHE_DIR", None)
     command = [sys.executable, "-c", READ_ONLY]

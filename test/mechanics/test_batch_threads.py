@@ -30,7 +30,7 @@ def changed(values, change):
 
 def by(threads, monkeypatch, *problem):
     """The outcomes on a machine with as many processors as `threads`, and the threads that solved them."""
-    fill, names = batch.filler(), set()
+    fill, names = batch.chunk_solver(), set()
 
     class Watched:
         def __call__(self, *given):
@@ -40,7 +40,7 @@ def by(threads, monkeypatch, *problem):
     with monkeypatch.context() as patch:
         patch.setattr(batch, "processors", lambda: threads)
         patch.setattr(batch, "FEWEST", 1)
-        patch.setattr(batch, "filler", Watched)
+        patch.setattr(batch, "chunk_solver", Watched)
         return solve_impacts(*problem), names
 
 
@@ -134,7 +134,7 @@ def test_by_threads_a_bad_number_spoils_its_own_element_alone(monkeypatch):
 def replaced(monkeypatch, fill):
     """Solve with another function than the compiled one, on a machine of two processors."""
     monkeypatch.setattr(batch, "processors", lambda: 2)
-    monkeypatch.setattr(batch, "filler", lambda: partial(fill))
+    monkeypatch.setattr(batch, "chunk_solver", lambda: partial(fill))
 
 
 def bodies(count):

@@ -167,11 +167,11 @@ def test_many_impacts_have_the_answers_of_each_alone_compiled_or_not(kind, monke
     _, body, twist = random_problems.problems_of(kind, np.random.default_rng(9), 300)
     compiled = solve_impacts(body, twist, restitution="energetic")
     monkeypatch.setitem(sys.modules, "numba", None)  # an import of it fails
-    batch.filler.cache_clear()
+    batch.chunk_solver.cache_clear()
     try:
         plain = solve_impacts(body, twist, restitution="energetic")
     finally:
-        batch.filler.cache_clear()
+        batch.chunk_solver.cache_clear()
     assert [field.tobytes() for field in plain] == [field.tobytes() for field in compiled]
     each = [energetic(*problem) for problem in random_impacts(kind, 300, seed=9)]
     assert np.array([one.twist for one in each]).tobytes() == compiled.twist.tobytes()

@@ -209,8 +209,9 @@ def code(request, monkeypatch):
     """The law code in all of its forms: in the two without numba a division by zero raises."""
     if request.param != "numba":
         law = as_python(LAW) if request.param == "Python" else import_module(f"impact_predictor.{LAW}")
-        plain = [without_numba(make, law) for make in (spatial.make_bodies, spatial.make_mechanism)]
-        monkeypatch.setattr(spatial, "solvers", lambda: spatial.Solvers(*plain))
+        for solver, function in (("solver", law.strike_all), ("mechanism_solver", law.strike_mechanism)):
+            plain = without_numba(function)
+            monkeypatch.setattr(spatial, solver, lambda plain=plain: plain)
 
 
 def finite(outcome):

@@ -19,13 +19,7 @@ from scipy.spatial.transform import Rotation
 
 from impact_predictor.mechanics.compiled import without_numba
 from impact_predictor.mechanics.motion import Fall, PlanarState, next_touchdown, spatial, spatial_problem
-from impact_predictor.mechanics.motion.spatial import (
-    Pull,
-    SpatialFall,
-    SpatialState,
-    fall,
-    make_fall,
-)
+from impact_predictor.mechanics.motion.spatial import Pull, SpatialFall, SpatialState, fall
 from impact_predictor.native import as_python
 
 PYTHON = as_python("mechanics.motion.spatial_problem")
@@ -332,7 +326,7 @@ def test_a_corner_that_lifts_does_not_strike_as_it_leaves() -> None:
 @pytest.mark.parametrize("plain", [False, True], ids=["compiled", "plain"])
 def test_odd_numbers_have_no_touchdown_and_raise_nothing(plain: bool, monkeypatch: pytest.MonkeyPatch) -> None:
     if plain:
-        monkeypatch.setattr(spatial, "solver", lambda: without_numba(make_fall, PYTHON))
+        monkeypatch.setattr(spatial, "solver", lambda: without_numba(PYTHON.fall))
     good = SpatialState((0.0, 0.0, 0.2), FLAT, (0.0, 0.0, -1.0), (1.0, 2.0, 3.0))
     bad = [
         fall(good._replace(position=(0.0, math.nan, 0.2)), ALIKE, CUBE),
@@ -374,7 +368,7 @@ def test_parts_of_one_array_to_work_with_are_apart(monkeypatch: pytest.MonkeyPat
     start, corner = on_corner(random.Random(2), 0.5)
     cases = [(start, GENERAL, points, (0,), 0.2) for points in ([CUBE[corner]], [CUBE[corner], CUBE[corner ^ 1]])]
     found = [fall(*case) for case in cases]
-    monkeypatch.setattr(spatial, "solver", lambda: make_fall("", PYTHON))
+    monkeypatch.setattr(spatial, "solver", lambda: PYTHON.fall)
     assert [fall(*case) for case in cases] == found
     assert found[1].point == 1
 
@@ -389,6 +383,6 @@ def test_every_form_of_the_law_code_gives_the_same_bits(monkeypatch: pytest.Monk
         cases.append((start, GENERAL, CUBE, standing, 0.2, DECK, 0.3))
     found = [fall(*case) for case in cases]
     for law in (PYTHON, spatial_problem):
-        monkeypatch.setattr(spatial, "solver", lambda law=law: without_numba(make_fall, law))
+        monkeypatch.setattr(spatial, "solver", lambda law=law: without_numba(law.fall))
         assert [fall(*case) for case in cases] == found
     assert any(one.point >= 0 for one in found)

@@ -15,10 +15,10 @@ from scipy.spatial.transform import Rotation
 from impact_predictor.mechanics.impact.spatial import Body, ContactPoints, solve_spatial_impacts
 from impact_predictor.mechanics.motion.spatial import SpatialState
 from impact_predictor.mechanics.types import ContactState, Flag, Mode
+from impact_predictor.prediction import spatial_impact
 from impact_predictor.prediction.drawn import over
 from impact_predictor.prediction.predictor import Predictor
 from impact_predictor.prediction.scene import Scene
-from impact_predictor.prediction.spatial_impact import SpatialImpactModel
 from impact_predictor.prediction.types import Covariance, Sample, Touchdown
 
 DRAWN: dict[str, Any] = {"samples": 32, "gap_deviation": 5e-4, "friction_deviation": 0.05, "restitution_deviation": 0.1}
@@ -77,13 +77,13 @@ def test_deviations_of_zero_change_nothing(seed: int) -> None:
 
 def test_deviations_of_zero_cost_one_impact(monkeypatch: pytest.MonkeyPatch) -> None:
     counts: list[int] = []
-    solve = SpatialImpactModel._solve
+    solve = spatial_impact.solver()
 
-    def counted(self: SpatialImpactModel, problems: Any, *others: Any) -> None:
+    def counted(n: int, problems: Any, *others: Any) -> None:
         counts.append(len(problems))
-        solve(self, problems, *others)
+        solve(n, problems, *others)
 
-    monkeypatch.setattr(SpatialImpactModel, "_solve", counted)
+    monkeypatch.setattr(spatial_impact, "solver", lambda: counted)
     announced(*falling(1), gap_deviation=0.0, samples=32)
     # One more is the one that loads the law.
     assert counts == [1, 1]
@@ -232,7 +232,7 @@ def test_draws_have_the_same_bits_with_numba_and_without(monkeypatch: pytest.Mon
     from impact_predictor.prediction import draws
 
     compiled = [announced(*falling(seed), spread_by(0.02), **DRAWN) for seed in range(2)]
-    prepared = spatial.solvers, motion.solver, draws.teller
+    prepared = spatial.solver, motion.solver, draws.teller
     try:
         for one in prepared:
             one.cache_clear()

@@ -189,11 +189,11 @@ def test_every_run_gives_the_same_bits_with_numba_and_without(monkeypatch):
     elsewhere = subprocess.run([sys.executable, "-c", program], check=True, capture_output=True, text=True)
     assert elsewhere.stdout.split() == here
     monkeypatch.setitem(sys.modules, "numba", None)  # an import of it fails
-    batch.filler.cache_clear()
+    batch.chunk_solver.cache_clear()
     try:
         assert bits() == here
     finally:
-        batch.filler.cache_clear()
+        batch.chunk_solver.cache_clear()
 
 
 POINTS = ((-0.1, -0.3, -0.05), (-0.1, 0.3, -0.05), (0.12, -0.3, -0.05), (0.12, 0.3, -0.05))
@@ -276,9 +276,9 @@ def test_a_covariance_that_is_none_is_said_and_kept_as_it_came():
 def test_the_sample_path_compiles_nothing():
     """What numba compiles, it compiles when the predictor is made."""
     predictor = Predictor(scene(samples=32))
-    compiled = getattr(batch.filler(), "signatures", None)
+    compiled = getattr(batch.chunk_solver(), "signatures", None)
     before = None if compiled is None else list(compiled)
     predictor.update(tipping_box())
     predictor.update(tipping_box()._replace(stamp=1_000_000))
-    after = getattr(batch.filler(), "signatures", None)
+    after = getattr(batch.chunk_solver(), "signatures", None)
     assert (None if after is None else list(after)) == before

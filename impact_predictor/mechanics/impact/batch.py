@@ -54,7 +54,7 @@ CALLED = (path_law.solve, total_law.solve, total_law.any_that_holds, total_law.a
 time: calls with so many numbers are slow."""
 
 
-Fill = Callable[[Any, bool, int, Validity, int, "Outcomes"], None]
+ChunkSolver = Callable[[Any, bool, int, Validity, int, "Outcomes"], None]
 """Solves a chunk: columns of the fields, whether a body stands, the law, validity, the index of the first, outcomes."""
 
 
@@ -114,7 +114,7 @@ def solve_impacts(
         energy_lost=np.empty(count),
         unique=np.empty(count, np.bool_),
     )
-    fill, each = filler(), cast(Any, ["readonly", "contig", "aligned"])
+    solver, each = chunk_solver(), cast(Any, ["readonly", "contig", "aligned"])
 
     def solve(start: int, most: int = PART) -> None:
         chunks: Any = np.nditer(
@@ -126,7 +126,7 @@ def solve_impacts(
         )
         chunks.iterrange = start, min(start + most, count)
         for columns in chunks:
-            fill(columns, old is not None, number, limits, start, outcomes)
+            solver(columns, old is not None, number, limits, start, outcomes)
             start += len(columns[0])
 
     parts = iter(range(0, count, PART))  # one for all threads
@@ -136,7 +136,7 @@ def solve_impacts(
             solve(start)
 
     # Of Python's own threads only one runs at a time.
-    threads = 1 if isfunction(fill) else min(processors(), count // FEWEST)
+    threads = 1 if isfunction(solver) else min(processors(), count // FEWEST)
     if threads > 1:
         solve(0, 1)  # compiles if nothing has yet: only the main thread can be interrupted
         with ThreadPoolExecutor(threads - 1) as pool:
@@ -172,38 +172,32 @@ def numbers_of(contact: Contact) -> tuple[Any, ...]:
 
 
 @cache
-def filler() -> Fill:
+def chunk_solver() -> ChunkSolver:
     """The function that solves a chunk, compiled if that can be."""
-    fill = compiled(make_fill, LAW_CODE, lambda function: function not in CALLED, nogil=True)
-    if fill is None:
-        plain = make_fill("")
-        return lambda columns, *rest: plain(tuple(column.tolist() for column in columns), *rest)
-    return fill
+    found = compiled(solve_chunk, LAW_CODE, lambda function: function not in CALLED, nogil=True)
+    if found is None:
+        return lambda columns, *rest: solve_chunk(tuple(column.tolist() for column in columns), *rest)
+    return found
 
 
-def make_fill(law_code: str) -> Fill:
-    """The function that solves a chunk; numba keeps what it compiled under the value of `law_code`."""
-
-    def fill(columns: Any, stands: bool, law: int, validity: Validity, start: int, outcomes: Outcomes) -> None:
-        law_code  # noqa: B018
-        m, j, ox, oy, of, onx, ony, oe, oux, ouy, nx, ny, nf, nnx, nny, ne, nux, nuy, vx, vy, omega = columns
-        mode, twist, impulses, segments, flags, energy_lost, unique = outcomes
-        for i in range(len(m)):
-            old = ox[i], oy[i], of[i], (onx[i], ony[i]), oe[i], (oux[i], ouy[i])
-            new = nx[i], ny[i], nf[i], (nnx[i], nny[i]), ne[i], (nux[i], nuy[i])
-            k = start + i
-            (
-                mode[k],
-                (twist[k, 0], twist[k, 1], twist[k, 2]),
-                impulses[k, 0, 0],
-                impulses[k, 0, 1],
-                impulses[k, 1, 0],
-                impulses[k, 1, 1],
-                segments[k],
-                flags[k],
-                energy_lost[k],
-                unique[k],
-                _,
-            ) = answer.answer(m[i], j[i], stands, old, new, (vx[i], vy[i], omega[i]), law, validity)
-
-    return fill
+def solve_chunk(columns: Any, stands: bool, law: int, validity: Validity, start: int, outcomes: Outcomes) -> None:
+    """Fill in the outcomes of a chunk, of which the first has the index `start`."""
+    m, j, ox, oy, of, onx, ony, oe, oux, ouy, nx, ny, nf, nnx, nny, ne, nux, nuy, vx, vy, omega = columns
+    mode, twist, impulses, segments, flags, energy_lost, unique = outcomes
+    for i in range(len(m)):
+        old = ox[i], oy[i], of[i], (onx[i], ony[i]), oe[i], (oux[i], ouy[i])
+        new = nx[i], ny[i], nf[i], (nnx[i], nny[i]), ne[i], (nux[i], nuy[i])
+        k = start + i
+        (
+            mode[k],
+            (twist[k, 0], twist[k, 1], twist[k, 2]),
+            impulses[k, 0, 0],
+            impulses[k, 0, 1],
+            impulses[k, 1, 0],
+            impulses[k, 1, 1],
+            segments[k],
+            flags[k],
+            energy_lost[k],
+            unique[k],
+            _,
+        ) = answer.answer(m[i], j[i], stands, old, new, (vx[i], vy[i], omega[i]), law, validity)

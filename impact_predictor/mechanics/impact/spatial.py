@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from functools import cache
 from math import inf
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -147,7 +147,7 @@ def solve_body(
     """`solve_spatial_impact` of a body, told by the numbers of a problem (see `spatial_body`)."""
     n, total = (len(problem) - BODY) // CONTACT, bool(number_of(law))
     answer, notes = np.empty(ANSWER + n * RESULT), np.empty(1, np.int64)
-    solvers().bodies(n, problem[None], total, merge, threshold, steps, answer[None], notes, *workspace(n))
+    solver()(n, problem[None], total, merge, threshold, steps, answer[None], notes, *workspace(n))
     of_each = answer[ANSWER:].reshape(n, RESULT)
     return SpatialOutcome(
         twist=answer[:6],
@@ -199,7 +199,7 @@ def solve_spatial_impacts(
     # Of another order of its numbers it would be compiled once more.
     problems = np.ascontiguousarray(problems.reshape(-1, BODY + n * CONTACT))
     answers, notes = np.zeros((len(problems), ANSWER + RESULT * n)), np.zeros(len(problems), np.int64)
-    solvers().bodies(n, problems, *how, answers, notes, *workspace(n))
+    solver()(n, problems, *how, answers, notes, *workspace(n))
     answers = answers.reshape(*shape, ANSWER + RESULT * n)
     of_each = answers[..., ANSWER:].reshape(*shape, n, RESULT)
     return SpatialOutcomes(
@@ -260,7 +260,7 @@ def solve_delassus(
     n, total = len(friction), bool(number_of(law))
     impulse, after = np.zeros(3 * n), c.copy()
     work, marks = workspace(n, coordinates(n))
-    notes = solvers().mechanism(
+    notes = mechanism_solver()(
         n, W.ravel(), friction, restitution, gaps, total, merge, threshold, steps, c, after, impulse, work, marks
     )
     return SpatialOutcome(
@@ -354,67 +354,17 @@ def workspace(n: int, motion: int = 6) -> tuple[NDArray[np.float64], NDArray[np.
     return np.empty(room(n, motion)), np.zeros(2 * n, np.int64)
 
 
-class Solvers(NamedTuple):
-    """The doors of the law code: many bodies with as many contacts, and one mechanism."""
-
-    bodies: Callable[..., None]
-    mechanism: Callable[..., int]
+@cache
+def solver() -> Callable[..., None]:
+    """The law code of many bodies, compiled if that can be; the first time on a machine this takes some seconds."""
+    return door(spatial_body.strike_all, USED, INLINED)
 
 
 @cache
-def solvers() -> Solvers:
-    """The doors, compiled if that can be; the first time on a machine this takes some seconds."""
-    return Solvers(door(make_bodies, spatial_body, USED, INLINED), door(make_mechanism, spatial_body, USED, INLINED))
+def mechanism_solver() -> Callable[..., int]:
+    """The law code of a mechanism, in the same way."""
+    return door(spatial_body.strike_mechanism, USED, INLINED)
 
 
 USED = (spatial_path,)
 INLINED = (spatial_path.velocities, spatial_path.push)
-
-
-def make_bodies(law_code: str, law: Any) -> Callable[..., None]:
-    """The function that solves many problems by `spatial_body`; numba keeps what it compiled under `law_code`."""
-
-    def bodies(
-        n: int,
-        problems: Sequence[Sequence[float]],
-        total: bool,
-        merge: float,
-        threshold: float,
-        steps: int,
-        answers: Sequence[Any],
-        notes: Any,
-        work: Any,
-        marks: Any,
-    ) -> None:
-        law_code  # noqa: B018
-        for i in range(len(problems)):
-            notes[i] = law.strike(n, problems[i], total, merge, threshold, steps, answers[i], work, marks)
-
-    return bodies
-
-
-def make_mechanism(law_code: str, law: Any) -> Callable[..., int]:
-    """The function that solves one mechanism."""
-
-    def mechanism(
-        n: int,
-        W: Any,
-        friction: Any,
-        restitution: Any,
-        gaps: Any,
-        total: bool,
-        merge: float,
-        threshold: float,
-        steps: int,
-        start: Any,
-        c: Any,
-        impulse: Any,
-        work: Any,
-        marks: Any,
-    ) -> int:
-        law_code  # noqa: B018
-        return law.strike_mechanism(  # type: ignore[no-any-return]
-            n, W, friction, restitution, gaps, total, merge, threshold, steps, start, c, impulse, work, marks
-        )
-
-    return mechanism

@@ -11,6 +11,7 @@ along the normal moves it there, over the impulse.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import sqrt
 from typing import TYPE_CHECKING, Final
 
@@ -81,6 +82,23 @@ def determinant(xx: float, yy: float, zz: float, xy: float, xz: float, yz: float
 def room(n: Count, r: int) -> int:
     """Numbers that an impact of n contacts is worked with, where motion has r coordinates."""
     return 3 * n * r + (15 + WORK) * n + 2 * r
+
+
+def strike_all(
+    n: Count,
+    problems: Sequence[Floats],
+    total: bool,
+    merge: float,
+    threshold: float,
+    steps: int,
+    answers: Sequence[Floats],
+    notes: Ints,
+    work: Floats,
+    marks: Ints,
+) -> None:
+    """Fill in the answers to problems of as many contacts each, and the flags of each: see `strike`."""
+    for i in range(len(problems)):
+        notes[i] = strike(n, problems[i], total, merge, threshold, steps, answers[i], work, marks)
 
 
 def strike(

@@ -86,13 +86,18 @@ def fall(
     by the least impulse; `friction` coefficient, one number or (n,); `horizon` in s. Never raises for bad numbers, and
     never returns NaN.
     """
+    # Of any sequences, as in Python: machine code would ask for the tuples that these have.
+    start: Any = state
+    feels: Any = pull
+    arms: Any = points
     n = len(points)
     frictions = [friction] * n if isinstance(friction, float | int) else friction
-    numbers = [horizon, *state.position, *state.orientation, *state.velocity, *state.angular_velocity]
-    numbers += [*inertia, *pull.gravity, *pull.growth, *pull.spin, *pull.turning, *frictions]
-    for point in points:
-        numbers += point
-    marks, told = np.zeros(2 * n + 1, np.int64), np.empty(OUTPUT + 2 * n)
+    numbers = [horizon, *start.position, *start.orientation, *start.velocity, *start.angular_velocity]
+    numbers += [*inertia, *feels.gravity, *feels.growth, *feels.spin, *feels.turning, *frictions]
+    for arm in arms:
+        numbers += arm
+    marks: Any = np.zeros(2 * n + 1, np.int64)
+    told: Any = np.empty(OUTPUT + 2 * n)
     for i in standing:
         marks[i] = 1
     work = np.empty(WORK[0] + WORK[1] * n + WORK[2] * n * n)
@@ -124,14 +129,4 @@ INLINED = (reactions.derive, reactions.fill, reactions.locate, falling.measure, 
 @cache
 def solver() -> Callable[..., int]:
     """The law code that finds a touchdown, compiled if that can be; the first time on a machine this takes seconds."""
-    return door(make_fall, spatial_problem, USED, INLINED)
-
-
-def make_fall(law_code: str, law: Any) -> Callable[..., int]:
-    """The function that finds a touchdown; numba keeps what it compiled under the value of `law_code`."""
-
-    def fall(n: int, numbers: Any, marks: Any, work: Any, out: Any) -> int:
-        law_code  # noqa: B018
-        return law.fall(n, numbers, marks, work, out)  # type: ignore[no-any-return]
-
-    return fall
+    return door(spatial_problem.fall, USED, INLINED)

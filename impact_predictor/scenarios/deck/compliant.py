@@ -96,20 +96,6 @@ SETTLES: Final = 6
 """Looks before a unit comes near, in which the springs take its load: a unit that is high and narrow sways on them."""
 
 
-def make_advance(law_code: str, law: Any) -> Any:
-    """The function that makes steps; numba keeps what it compiled under the value of `law_code`."""
-
-    def advance(
-        steps: int, n: int, given: Any, felt: Any, y: Any, points: Any, held: Any, kept: Any, rows: Any, marks: Any
-    ) -> int:
-        law_code  # noqa: B018
-        return law.advance(  # type: ignore[no-any-return]
-            steps, n, given, felt, y, points, held, kept, rows, marks
-        )
-
-    return advance
-
-
 class _Stretch(NamedTuple):
     """Steps of a motion at `times` (k,): `rows` (k, 15) and `marks` (k, 2, n) as in `stepping`."""
 
@@ -171,7 +157,7 @@ class _Compliant:
         damping = DAMPING * 2.0 * sqrt(stiffness * scene.mass / len(feet))
         numbers = [STEP, scene.height, scene.mass, scene.friction, scene.restitution, stiffness, damping]
         self.numbers = np.array([*numbers, *self.inertia.ravel(), *np.linalg.inv(self.inertia).ravel()])
-        self.advance = door(make_advance, stepping)
+        self.advance = door(stepping.advance)
         place = unit.mount.beside, unit.start.x + unit.foot[0], unit.start.y + unit.foot[1]
         c, s = cos(0.5 * unit.start.angle), sin(0.5 * unit.start.angle)
         turn = s * cos(half), -s * sin(half), c * sin(half), c * cos(half)

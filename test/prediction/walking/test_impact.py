@@ -368,11 +368,11 @@ def test_a_foot_that_lands_with_one_that_has_braked_turns_the_machine_about_it(r
 def test_every_landing_has_the_same_bits_with_numba_and_without(monkeypatch):
     here = [touchdown for _, touchdown in landings(20, seed=11, restitution=0.3)]
     monkeypatch.setitem(sys.modules, "numba", None)  # an import of it fails
-    spatial.solvers.cache_clear()
+    spatial.solver.cache_clear()
     try:
         assert [touchdown for _, touchdown in landings(20, seed=11, restitution=0.3)] == here
     finally:
-        spatial.solvers.cache_clear()
+        spatial.solver.cache_clear()
 
 
 def test_a_thin_plate_whose_inertia_was_rounded_is_struck_as_any_other_body():
