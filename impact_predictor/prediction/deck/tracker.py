@@ -13,7 +13,7 @@ from ..checks import LARGEST, PAUSE, check_orientation, order_of
 from ..scene import MovingDeck
 from ..types import Felt, Imu, Moment, Sample, Status, Vector3
 from ..vectors import add, axes_of, dot, rotation_between, times, to_body, to_world
-from .motion import MeanMotion, SupportState, ahead, between, later, resting
+from .motion import NOWHERE, MeanMotion, SupportState, ahead, between, later, resting
 from .window import END, SLOPE, TURNING, MotionWindow
 
 if TYPE_CHECKING:
@@ -34,6 +34,13 @@ FACTOR = 6.0
 """Allowed to noise, in root mean squares of the steps; for three normal parts these are ten standard deviations."""
 
 MEMORY = 1.0 / 32.0  # of the mean square, the part of the newest step
+
+ASTRAY = 0.006
+"""m/s by which the support may go on otherwise than it was led on from message to message: bodies that are sampled in
+between seem to approach it so fast."""
+
+GROWS = 2.5  # with this power of the time between two messages
+SEEN = 20.0  # s over which it is averaged
 
 
 class Deck:
@@ -71,6 +78,9 @@ class Deck:
         self._mean = MeanMotion(self._still)
         self._asked: int | None = None
         self._heard: int | None = None
+        self._leads = False  # whether a body asks for more than half a step after the last message
+        self._step = self._astray = 0.0
+        self._missed = NOWHERE
 
     def update(self, sample: Sample) -> Status:
         """Take a message of the support's pose and twist, where the scene says so. A refused one tells nothing."""
@@ -153,6 +163,7 @@ class Deck:
             return self.last or self._state
         second = self._history[-1]
         if gap > 0:
+            self._leads = self._leads or 2e-9 * gap > self._step > 0.0
             return self._moment(later(second, stamp))
         for first in reversed(self._history):
             if first.stamp <= stamp:
@@ -178,7 +189,7 @@ class Deck:
         """What speaks against the window that is given, a sentence each."""
         given = self.deck.window
         found = [window.balance.doubt(given) for window in (self._linear, self._angular)] if given else []
-        return tuple([one for one in found if one][:1])
+        return tuple([one for one in (*found, self._coarse()) if one][:1])
 
     def learn(self) -> None:
         """Learn from now on how the support goes on in waves, for `outlook`."""
@@ -231,6 +242,17 @@ class Deck:
             found |= {f"{name}.{lead:g}_s": f"{one:.4f}" for lead, one in zip(LEADS, numbers, strict=True)}
         return found
 
+    def _coarse(self) -> str:
+        """What is wrong with messages that come so seldom, "" where nothing is."""
+        if not self._leads or self._astray < ASTRAY * ASTRAY:
+            return ""
+        speed = sqrt(self._astray)
+        return (
+            f"the support's messages come every {self._step:.2g} s, and from one to the next it goes on by {speed:.2g} "
+            "m/s otherwise than it was led on: bodies that are sampled in between show touchdowns that are none; send "
+            f"{(speed / ASTRAY) ** (1.0 / GROWS) / self._step:.0f} a second or more"
+        )
+
     def _in_order(self, stamp: int, frames: tuple[str, str]) -> Status:
         last = None if self._seen is None else self._seen.stamp
         status = order_of(stamp, last)
@@ -274,7 +296,13 @@ class Deck:
         if not history:
             self._before = self._state or Status.NO_SUPPORT
         else:
-            self._mean.add(known, (known.stamp - history[-1].stamp) / NANOSECONDS)
+            last = history[-1]
+            step = (known.stamp - last.stamp) / NANOSECONDS
+            self._mean.add(known, step)
+            missed = add(add(known.velocity, last.velocity, -1.0), last.acceleration, -step)
+            # Of noise one error says nothing of the next.
+            self._astray += min(step / SEEN, 1.0) * (dot(missed, self._missed) - self._astray)
+            self._step, self._missed = step, missed
         self._state = state
         self._latest = None
         history.append(known)

@@ -176,3 +176,31 @@ def test_how_fast_what_is_found_changes_is_told_apart_from_its_noise() -> None:
         told.append((balance.error(10.0) / (SLOPE.lag * 10.0**2)) ** 2)
     # Noise makes second derivatives, uncorrected, as large again and half more; 6 % is what so many draws leave.
     assert np.mean(told) == pytest.approx(curvature**2, rel=0.15)
+
+
+def coarse(rate: float, asked: float, noise: float = 0.0) -> tuple[str, ...]:
+    """What is doubted of a deck of so many messages a second, at which a body is sampled so often."""
+    deck = Deck(MovingDeck(window=0.0), GRAVITY, UP)
+    every = round(RATE / rate)
+    told = [sample for sample, _ in samples(1.5, noise, 60.0)][::every]
+    for sample in told:
+        deck.update(sample)
+        for k in range(round(asked / rate)):
+            deck.at(sample.stamp + round(1e9 * k / asked))
+    return deck.doubts()
+
+
+def test_a_deck_that_is_told_too_seldom_for_its_units_is_named_with_the_rate_that_is_needed() -> None:
+    (doubt,) = coarse(rate=5.0, asked=50.0)
+    assert "come every 0.2 s" in doubt
+    needed = float(doubt.partition("; send ")[2].partition(" ")[0])
+    assert 5.0 < needed <= RATE
+    assert not coarse(rate=RATE, asked=50.0)
+
+
+def test_units_that_are_sampled_with_a_seldom_told_deck_miss_nothing_of_it() -> None:
+    assert not coarse(rate=5.0, asked=5.0)
+
+
+def test_noise_of_a_deck_is_not_taken_for_too_few_messages() -> None:
+    assert not coarse(rate=RATE, asked=100.0, noise=NOISE)
