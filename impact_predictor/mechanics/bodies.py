@@ -33,7 +33,9 @@ def plate(
     """A plate (crate, block) of `length` and `height` in m on a flat floor (the paper, section 3, Fig. 4).
 
     The old contact lies `a` behind the mass centre and the new one `b` ahead (m; half the length unless given), half
-    the height below it. `inertia` in kg m^2 is that of a homogeneous rectangle unless given.
+    the height below it. `inertia` in kg m^2 is that of a homogeneous rectangle unless given. `friction` is that of both
+    contacts; `restitution` (0 to 1) is that of the new one, which strikes. A body that strikes with each in turn (see
+    `rock`) needs it at the old one, too: `body._replace(old=body.old._replace(restitution=restitution))`.
     """
     positive(length=length, height=height, mass=mass)
     if inertia is None:
@@ -61,7 +63,8 @@ def rod(
 ) -> TwoPointBody:
     """A rod of `length` and `thickness` in m on two supports `a` behind and `b` ahead of its middle (Fig. 1).
 
-    `inertia` in kg m^2 is that of a slender homogeneous rod, mass length^2 / 12, unless given.
+    `inertia` in kg m^2 is that of a slender homogeneous rod, mass length^2 / 12, unless given. `friction` and
+    `restitution` are as those of `plate`.
     """
     positive(length=length, mass=mass)
     not_negative(thickness=thickness)
@@ -82,7 +85,8 @@ def cylinder(
     """A cylinder of `radius` in m between two edges (the paper, section 4, Fig. 6).
 
     The old edge lies at the central angle `gamma` in rad behind the vertical, the new one at `gamma_new` ahead (the
-    same unless given); the normals point to the axis. `inertia` in kg m^2 is mass radius^2 / 2 unless given.
+    same unless given); the normals point to the axis. `inertia` in kg m^2 is mass radius^2 / 2 unless given. `friction`
+    and `restitution` are as those of `plate`.
     """
     positive(radius=radius, mass=mass)
     if inertia is None:

@@ -8,7 +8,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections import deque
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, NoReturn
 
 from .checks import PAUSE, check_numbers, in_floats, order_of
 from .scene import Scene
@@ -154,6 +154,11 @@ class Predictor:
         self.scene = self.contacts.scene
         self._deck = deck
         self.tree = tree if scene.body_frame else None
+
+    def __reduce__(self) -> NoReturn:
+        raise TypeError(
+            "a Predictor is neither copied nor pickled: make another of its scene, and give it the same samples"
+        )
 
     @property
     def frames(self) -> tuple[str, ...]:

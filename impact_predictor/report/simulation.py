@@ -43,7 +43,7 @@ def _print_impacts(console: Console, header: str, impacts: Sequence[ListedImpact
         Column("before\nrad/s", lambda row: f"{abs(row.strike.before.omega):.6f}"),
         Column("after\nrad/s", lambda row: f"{abs(row.strike.after.omega):.6f}"),
         Column("ratio\n", lambda row: _ratio(row.strike)),
-        Column("energy\nlost, J", lambda row: f"{row.strike.outcome.energy_lost:.3g}"),
+        Column("energy\nlost, J", lambda row: f"{row.strike.outcome.energy_lost + 0.0:.3g}"),
     ]
     if impacts:
         show(console, table_of(columns, impacts[:MOST_IMPACTS]))

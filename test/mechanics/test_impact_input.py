@@ -2,6 +2,7 @@
 
 import math
 
+import numpy as np
 import pytest
 
 from impact_predictor import Contact, Flag, Mode, Twist, TwoPointBody, plate, solve_impact, solve_impacts
@@ -81,3 +82,13 @@ def test_what_is_no_number_raises_alike_for_one_impact_and_for_many(wrong, error
         for solve, raised in ((solve_impact, of_one), (solve_impacts, error)):
             with pytest.raises(raised):
                 solve(changed, Twist(*twist))
+
+
+@pytest.mark.parametrize(
+    ("body", "twist"),
+    [(plate(length=np.ones(3), height=1.0, mass=1.0, friction=0.3), (0.0, 0.0, -1.0)), (GOOD, (1.0, 2.0))],
+    ids=["arrays", "two numbers"],
+)
+def test_what_is_not_one_impact_is_told_where_to_go(body, twist):
+    with pytest.raises(TypeError, match=r"^solve_impact takes numbers, and `solve_impacts` arrays of them: "):
+        solve_impact(body, twist)

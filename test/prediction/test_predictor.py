@@ -6,7 +6,9 @@ rotations: any support, any position, any body frame.
 
 from __future__ import annotations
 
+import copy
 import math
+import pickle
 from collections.abc import Callable
 from itertools import product
 from typing import Any, NamedTuple
@@ -494,3 +496,11 @@ def test_both_laws_agree_where_one_takes_over_from_the_other(kind: str) -> None:
     for touchdown in beside:
         assert touchdown.mode is planar.mode
         assert touchdown.after == pytest.approx(tuple(planar.after), abs=0.03 * (abs(planar.before.omega) + 1.0))
+
+
+@pytest.mark.parametrize("double", [copy.deepcopy, pickle.dumps])
+def test_a_predictor_is_neither_copied_nor_pickled_in_part(double: Callable[[Predictor], object]) -> None:
+    with pytest.raises(TypeError, match="make another of its scene"):
+        double(
+            Predictor(Scene(1.0, ((0.1, 0.0, 0.0), (0.0, 0.1, 0.0), (0.0, 0.0, 0.1)), 0.3, points=((0.0, 0.0, 0.0),)))
+        )

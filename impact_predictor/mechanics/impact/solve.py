@@ -63,10 +63,13 @@ def solve_impact(
     body collisions with friction (1990), for the energetic rule.
     """
     number = number_of(law, restitution)
-    mass, inertia, old, new = body
-    mode, after, na, ta, nb, tb, segments, flags, energy_lost, unique, used = answer(
-        mass, inertia, old is not None, old or NOWHERE, new, twist, number, validity
-    )
+    try:
+        mass, inertia, old, new = body
+        mode, after, na, ta, nb, tb, segments, flags, energy_lost, unique, used = answer(
+            mass, inertia, old is not None, old or NOWHERE, new, twist, number, validity
+        )
+    except (TypeError, ValueError) as error:
+        raise TypeError(f"solve_impact takes numbers, and `solve_impacts` arrays of them: {error}") from None
     return Outcome(
         mode=MODES[mode],
         twist=Twist(*after),

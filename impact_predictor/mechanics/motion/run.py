@@ -59,13 +59,13 @@ def rock(
 ) -> Trajectory:
     """Follow a body on two contacts over a support, from event to event.
 
-    `body`: one with both normals (0, 1), as `rod` and `plate` make it, stands on two points fixed in it over the line
-    y = 0 of the support's frame; one with normals through its mass centre, as `cylinder` makes it, is a disc over two
-    edges fixed in the support, edge 0 being the origin of its frame. Friction and restitution are those of the
-    contacts. `start` is the state of the mass centre in the support's frame at `start_time` (s), see `standing`; a
-    contact near the support is put on it. `law` is that of `solve_impact`. The motion is followed for `duration` s,
-    until it is at rest for ever, or until it has turned by `overturned` rad from the pose with both contacts closed.
-    It ends, too, after `max_events` events, or as many steps in all.
+    `body`: one with both normals (0, 1), as `rod` and `plate` make it, stands on two points fixed in it over the line y
+    = 0 of the support's frame; one with normals through its mass centre, as `cylinder` makes it, is a disc over two
+    edges fixed in the support, edge 0 being the origin of its frame. Friction and restitution are those of each
+    contact, that of the old one too where it strikes. `start` is the state of the mass centre in the support's frame at
+    `start_time` (s), see `standing`; a contact near the support is put on it. `law` is that of `solve_impact`. The
+    motion is followed for `duration` s, until it is at rest for ever, or until it has turned by `overturned` rad from
+    the pose with both contacts closed. It ends, too, after `max_events` events, or as many steps in all.
     `tolerance` is the error allowed to a step where a contact slips or the support moves, relative to what happens in
     the step; without both, turning is exact.
 
