@@ -96,6 +96,8 @@ def replay(
     started = perf_counter()
     if output is not None and Path(output).resolve() == Path(path).resolve():
         raise InputError(f"{os.fspath(output)} is the bag itself; give the predictions another name")
+    if isinstance(scenes, str | os.PathLike):
+        raise InputError(f"{os.fspath(scenes)!r} names a file of scenes; give read_scenes({os.fspath(scenes)!r})")
     by_name = {"": scenes} if isinstance(scenes, Scene) else scenes
     damage: list[str] = []
     with ExitStack() as stack:

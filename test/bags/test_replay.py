@@ -158,6 +158,11 @@ def test_the_bag_itself_is_no_output(tmp_path: Path, scene: Scene, messages: lis
     assert own.read_bytes() == before
 
 
+def test_the_name_of_a_file_is_no_scene(bag: Path) -> None:
+    with pytest.raises(InputError, match=r"give read_scenes\('scene\.yaml'\)"):
+        replay(bag, "scene.yaml")  # type: ignore[arg-type]
+
+
 def test_progress_is_told(bag: Path, scene: Scene) -> None:
     told: list[int] = []
     result = replay(bag, scene, progress=told.append)
