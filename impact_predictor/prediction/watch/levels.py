@@ -15,7 +15,6 @@ from ...stamps import NANOSECONDS
 from ..checks import REMEDIES
 from ..scene import Scene, Watching
 from ..types import Status, Touchdown, Vector3
-from .peaks import MarginOdds
 from .slips import FrictionSeen
 from .standing import BodyMotion, Standing
 
@@ -263,9 +262,9 @@ class WatchedBody:
             past = f" ({held:.1f} s ago: {'; '.join(rose)})"
         return "; ".join(words) + past
 
-    def values(self, outlook: BodyOutlook, per_hour: Sequence[float], odds: Sequence[MarginOdds]) -> dict[str, str]:
-        """The values of a report, always the same in the same order; `per_hour` are tips, slides and impacts, and
-        `odds` those of tipping and sliding.
+    def values(self, outlook: BodyOutlook, per_hour: Sequence[float], odds: dict[str, str]) -> dict[str, str]:
+        """The values of a report, always the same in the same order, with the `odds` among them; `per_hour` are tips,
+        slides and impacts.
         """
         used, tilt, (tips, slides, impacts) = outlook.used or NOTHING, self.standing.tilt, per_hour
         margins = {
@@ -276,8 +275,7 @@ class WatchedBody:
             "time_to_tip": f"{outlook.time_to_tip:.2f}",
             "time_to_slide": f"{outlook.time_to_slide:.2f}",
             "onset_probability": f"{outlook.chance:.2f}",
-            **odds[0].values("tip"),
-            **odds[1].values("slide"),
+            **odds,
             "energy_to_topple": f"{max(0.0, outlook.barrier - self.standing.kinetic):.3f}",
         }
         return {

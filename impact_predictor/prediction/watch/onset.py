@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 
 from ..types import Felt
 from ..vectors import add
+from .peaks import HOUR
 from .stance import StandingBody, unit_across
 
 if TYPE_CHECKING:
@@ -39,8 +40,6 @@ _MOTIONS: Final = 12  # numbers of a support's motion: g, W', and the products x
 
 LEAST_WATCHED: Final = 60.0
 """s: a shorter watch counts as one of a minute, so that a single onset is not a thousand per hour."""
-
-HOUR: Final = 3600.0
 
 
 class OnsetMargins(NamedTuple):
@@ -90,12 +89,7 @@ class Onset:
             one = self._margins(motion[:, None])
             return OnsetMargins(one.slide[:, 0], one.tip[:, 0], one.edge[:, 0], one.lifted[:, 0])
         blocks = [self._margins(motion[:, k : k + BLOCK]) for k in range(0, motion.shape[1], BLOCK)]
-        return OnsetMargins(
-            slide=np.concatenate([one.slide for one in blocks], axis=1),
-            tip=np.concatenate([one.tip for one in blocks], axis=1),
-            edge=np.concatenate([one.edge for one in blocks], axis=1),
-            lifted=np.concatenate([one.lifted for one in blocks], axis=1),
-        )
+        return OnsetMargins(*[np.concatenate(parts, axis=1) for parts in zip(*blocks, strict=True)])
 
     def _margins(self, motion: NDArray[np.float64]) -> OnsetMargins:
         """The margins at `motions` of not too many times."""

@@ -76,22 +76,14 @@ class PeakLaw(NamedTuple):
             return sqrt(self.threshold**2 + self.scale * log(number))
         return self.threshold + self.scale / self.shape * (1.0 - exp(-self.shape * log(number)))
 
-
-class MarginOdds(NamedTuple):
-    """How likely a margin is to pass 1 in the next 30 s (`soon`) and in the next `hour`, and the law of its peaks."""
-
-    soon: float
-    hour: float
-    law: PeakLaw
-
-    def values(self, name: str) -> dict[str, str]:
-        """The values of a report on the margin of a name."""
-        known = self.law.name != "unknown"
+    def values(self, name: str, soon: float, hour: float) -> dict[str, str]:
+        """What a report tells of a margin by its name, which passes 1 in 30 s (`soon`) and in an `hour` so likely."""
+        known = self.name != "unknown"
         return {
-            f"{name}_probability_30_s": f"{self.soon:.3f}",
-            f"{name}_probability_hour": f"{self.hour:.3f}" if known else "unknown",
-            f"{name}_maximum_hour": f"{self.law.maximum:.3f}" if known else "unknown",
-            f"{name}_peaks": self.law.name,
+            f"{name}_probability_30_s": f"{soon:.3f}",
+            f"{name}_probability_hour": f"{hour:.3f}" if known else "unknown",
+            f"{name}_maximum_hour": f"{self.maximum:.3f}" if known else "unknown",
+            f"{name}_peaks": self.name,
         }
 
 

@@ -33,7 +33,7 @@ from .levels import (
     rank_of,
 )
 from .onset import FULL, Onset, OnsetCounts, first_times, motion_of, motions
-from .peaks import HOUR, SOON, MarginOdds, MarginPeaks
+from .peaks import HOUR, SOON, MarginPeaks
 from .slips import FrictionSeen, Slips
 from .standing import BodyMotion
 
@@ -373,20 +373,19 @@ class Watch:
             stamp=now,
             level=GRAVITY[self._levels.ranks[number]],
             message=body.message(outlook, held),
-            values=body.values(outlook, self._counts.per_hour(number), self._odds(number, outlook))
+            values=body.values(outlook, self._counts.per_hour(number), self._odds(number, outlook.used or NOTHING))
             | self._felt[number],
         )
 
-    def _odds(self, number: int, outlook: BodyOutlook) -> list[MarginOdds]:
-        """What is to be expected of the margins of a body: that against tipping, and that against sliding."""
-        found = []
-        for row, used in enumerate((0.0, 0.0) if outlook.used is None else (outlook.used.tip, outlook.used.slide)):
+    def _odds(self, number: int, used: MarginsUsed) -> dict[str, str]:
+        """What a report tells of what is to be expected of the margins of a body."""
+        found = dict[str, str]()
+        for row, (name, part) in enumerate((("tip", used.tip), ("slide", used.slide))):
             law = self._peaks.law(row * len(self._bodies) + number)
             # The forecast tells of its horizon, and the peaks of the rest.
             horizon = float(self._horizons[number]) if self._is_learnt else 0.0
             ahead = float(self._chances[row, number]) if self._is_learnt else 0.0
             soon = 1.0 - (1.0 - ahead) * (1.0 - law.probability(max(0.0, SOON - horizon)))
             hour = 1.0 - (1.0 - ahead) * (1.0 - law.probability(HOUR - horizon))
-            over = used >= 1.0
-            found.append(MarginOdds(1.0 if over else soon, 1.0 if over else hour, law))
+            found |= law.values(name, *((1.0, 1.0) if part >= 1.0 else (soon, hour)))
         return found
