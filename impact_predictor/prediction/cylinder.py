@@ -155,9 +155,10 @@ class CylinderContacts(PointContacts):
 
     def touchdown_of(self, sample: Sample, posture: Posture, collision: Collision | SpatialCollision) -> Touchdown:
         assert isinstance(collision, Collision)
-        told, body, across = super().touchdown_of(sample, posture, collision), collision.body, collision.across
+        told, body = super().touchdown_of(sample, posture, collision), collision.body
+        drift, roll, yaw = collision.across
         touching = [body.new] if body.old is None else [body.old, body.new]
-        slips = [across.velocity - across.roll * one.y + across.yaw * one.x for one in touching]
+        slips = [drift - roll * one.y + yaw * one.x for one in touching]
         if max(map(abs, slips)) <= max(PLANAR * collision.speed, self.scatter.rate) or self.scene.friction == 0.0:
             return told
         return self._struck(told, collision, touching)
@@ -168,13 +169,13 @@ class CylinderContacts(PointContacts):
         The cylinder lies on its edges all along: they do not let it turn across its axis. Along the axis their
         impulses have no lever then, wherever they are.
         """
-        scene, before, across = self.scene, collision.before, collision.across
+        scene, before, (drift, roll, yaw) = self.scene, collision.before, collision.across
         n, along = len(touching), told.axis
         # In the impact plane and against the axis: these are the principal axes, in which what is blocked stays so.
         axes = cross(along, scene.normal), scene.normal, times(along, -1.0)
         inertia = collision.body.inertia
         problem = [scene.mass, BLOCKED * inertia, BLOCKED * inertia, inertia, 0.0, 0.0, 0.0]
-        problem += [before.vx, before.vy, -across.velocity, across.roll, across.yaw, before.omega]
+        problem += [before.vx, before.vy, -drift, roll, yaw, before.omega]
         for one in touching:
             problem += [one.x, one.y, 0.0, *one.normal, 0.0, scene.friction, scene.restitution, 0.0, 0.0, 0.0, 0.0]
         answer: Any = np.zeros(ANSWER + RESULT * n)

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import cache
 from math import sqrt
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,20 +32,6 @@ DRAW_STEPS = 5
 """Steps of the law for a draw: its error is small beside what the draws differ by."""
 
 
-class DrawnImpact(NamedTuple):
-    """What the draws of an impact say.
-
-    `mode` is the likeliest of those that a draw has, `answer` the mean over the draws with this mode, with the flags of
-    one of them in its `notes`; `lifts` are the probabilities with which each contact lifts.
-    """
-
-    mode: Mode
-    answer: list[float]
-    notes: int
-    lifts: list[float]
-    uncertainty: Uncertainty
-
-
 class Draws:
     """Carries what is uncertain about the impacts of a scene through the law that `solve` solves."""
 
@@ -64,8 +50,9 @@ class Draws:
         gap: float,
         now: Axes,
         axis: Vector3,
-    ) -> DrawnImpact:
-        """The draws of an impact.
+    ) -> tuple[Mode, list[float], int, list[float], Uncertainty]:
+        """What the draws of an impact say: the likeliest mode that a draw has; the mean answer over the draws with it,
+        and the notes of one of them; the probabilities with which each contact lifts; how sure the impact is.
 
         `problem` is as the law takes it, and the first `standing` of the contacts stand; the `axes` of the
         sample turn the covariance of its twist; `rates` in m/s are those of the other gaps, whose standard deviation is
@@ -102,18 +89,20 @@ class Draws:
         self._tell(n, standing, problem, answers, how, told)
         numbers = told.tolist()
         x, y, turn, xx, yy, turning = numbers[PLANAR : PLANAR + 6]
-        return DrawnImpact(
-            mode=MODES[int(numbers[LIKELIEST])],
-            answer=numbers[LIFTS + n : LIFTS + n + size],
-            notes=int(notes[int(numbers[LIKELIEST + 1])]),
-            lifts=numbers[LIFTS : LIFTS + n],
-            uncertainty=Uncertainty(
-                given=given,
-                probabilities=tuple(numbers[0:PLANAR:OF_MODE]),
-                mean=Twist(x, y, turn),
-                deviation=Twist(sqrt(xx), sqrt(yy), sqrt(turning)),
-                twist_covariance=tuple(numbers[PLANAR + 6 : LIKELIEST]) if used else sample.twist_covariance,
-            ),
+        uncertainty = Uncertainty(
+            given=given,
+            probabilities=tuple(numbers[0:PLANAR:OF_MODE]),
+            mean=Twist(x, y, turn),
+            deviation=Twist(sqrt(xx), sqrt(yy), sqrt(turning)),
+            twist_covariance=tuple(numbers[PLANAR + 6 : LIKELIEST]) if used else sample.twist_covariance,
+        )
+        mode, one = (int(number) for number in numbers[LIKELIEST:LIFTS])
+        return (
+            MODES[mode],
+            numbers[LIFTS + n : LIFTS + n + size],
+            int(notes[one]),
+            numbers[LIFTS : LIFTS + n],
+            uncertainty,
         )
 
 

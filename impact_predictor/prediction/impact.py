@@ -11,7 +11,7 @@ from ..mechanics.motion import Fall
 from ..mechanics.types import Twist, TwoPointBody, Vector
 from .planar import GRAZES, ORIGIN, ActiveContacts, ImpactPlane, Posture, hardly
 from .scene import Scene
-from .types import Leftover, Sample, SpatialTwist, Touchdown
+from .types import Leftover, Sample, SpatialTwist, Touchdown, Vector3
 from .vectors import add, axes_of, combine, cross, dot, to_body, to_world, total, turned
 
 if TYPE_CHECKING:
@@ -31,29 +31,21 @@ SLOWEST: Final = 4.0
 """An impact can be told from rest when it approaches this many times faster than gravity moves it in a contact time."""
 
 
-class LateralMotion(NamedTuple):
-    """Motion across the impact plane: velocity of the mass centre along the axis (m/s), angular velocities about d
-    (roll) and about the support normal (yaw) in rad/s.
-    """
-
-    velocity: float
-    roll: float
-    yaw: float
-
-
 class Collision(NamedTuple):
     """The collision that a sample shows to be ahead, before its impact.
 
-    `body` and its twist `before` are those of the impact, in the impact plane, and `across` is the motion across it;
-    `shift` (m) is how far the mass centre moves there until then, and `angle` how far the body turns; `lead_time` in s;
-    `measured` is the speed in m/s at which the sample shows the new points to approach, `speed` that of the touchdown.
+    `body` and its twist `before` are those of the impact, in the impact plane, and `across` is the motion across it:
+    velocity of the mass centre along the axis (m/s), angular velocities about d (roll) and about the support normal
+    (yaw) in rad/s; `shift` (m) is how far the mass centre moves there until then, and `angle` how far the body turns;
+    `lead_time` in s; `measured` is the speed in m/s at which the sample shows the new points to approach, `speed` that
+    of the touchdown.
     """
 
     contacts: ActiveContacts
     plane: ImpactPlane
     body: TwoPointBody
     before: Twist
-    across: LateralMotion
+    across: Vector3
     shift: Vector
     angle: float
     lead_time: float
@@ -89,7 +81,7 @@ def collision_after(
         plane=plane,
         body=body,
         before=Twist(vx, vy, omega),
-        across=LateralMotion(velocity, dot(plane.ahead, spin), dot(posture.normal, spin)),
+        across=(velocity, dot(plane.ahead, spin), dot(posture.normal, spin)),
         shift=(x - start[0], y - start[1]),
         angle=angle,
         lead_time=time,
@@ -115,28 +107,26 @@ class ImpactModel:
     def touchdown(self, sample: Sample, posture: Posture, collision: Collision) -> Touchdown:
         """The touchdown at the end of an approach, with its impact."""
         scene, contacts, plane, body = self._scene, collision.contacts, collision.plane, collision.body
-        before, across, time = collision.before, collision.across, collision.lead_time
+        before, time, (drift, roll, yaw) = collision.before, collision.lead_time, collision.across
         n, center = scene.normal, scene.center_of_mass
         outcome = solve_impact(body, before, scene.law, scene.validity, RESTITUTION[scene.law])
         # From the plane to space: the pose then, and the twist of the body frame after the impact.
         along = to_world(posture.axes, plane.axis)
         ahead = cross(along, n)
-        rotation = combine(
-            -collision.angle, plane.axis, across.roll * time, plane.ahead, across.yaw * time, posture.normal
-        )
+        rotation = combine(-collision.angle, plane.axis, roll * time, plane.ahead, yaw * time, posture.normal)
         orientation = turned(sample.orientation, rotation)
         now = axes_of(orientation)
         before_6d, after_6d = [
             SpatialTwist(
-                combine(twist.vx, ahead, twist.vy, n, across.velocity, along),
-                combine(-twist.omega, along, across.roll, ahead, across.yaw, n),
+                combine(twist.vx, ahead, twist.vy, n, drift, along),
+                combine(-twist.omega, along, roll, ahead, yaw, n),
             )
             for twist in (before, outcome.twist)
         ]
         linear, angular = to_body(now, after_6d.linear), to_body(now, after_6d.angular)
         pull = plane.gravity[2] if plane.old is None else 0.0
         x, y = collision.shift
-        glide = combine(x, ahead, y, n, (across.velocity - 0.5 * pull * time) * time, along)
+        glide = combine(x, ahead, y, n, (drift - 0.5 * pull * time) * time, along)
         position = add(sample.position, glide)
         if center != ORIGIN:
             linear = add(linear, cross(angular, center), -1.0)

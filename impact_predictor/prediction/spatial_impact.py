@@ -85,22 +85,23 @@ class SpatialImpactModel:
         scene, (old, new), count = self._scene, collision.contacts, len(collision.contacts.old)
         before, speed, normal = collision.before, collision.speed, scene.normal
         plane, now, least = plane_at(scene, collision), axes_of(collision.orientation), RESTS * speed
-        problem, drawn = self._problem(collision, now), None
+        problem, uncertainty = self._problem(collision, now), None
         positions = [add(collision.position, arm) for arm in collision.arms]
         if self._draws is None:
             answers: Any = np.empty((1, ANSWER + RESULT * len(collision.points)))
             flags: Any = np.empty(1, np.int64)
             self._solve(problem[None], answers, flags)
             answer, notes = answers[0].tolist(), int(flags[0])
+            contacts = outcomes_of(answer, collision.contacts, positions, repeat(normal))
+            mode = mode_of_contacts(contacts[:count], contacts[count:], normal, least)
         else:
             rates = list(collision.rates[count:])
-            drawn = self._draws.drawn(sample, axes, problem, count, rates, deviation, now, plane.axis)
-            answer, notes = self._stopped(problem, drawn.answer, least), drawn.notes
-        contacts = outcomes_of(answer, collision.contacts, positions, repeat(normal))
-        if drawn is not None:
-            contacts = [
-                contact._replace(lift_probability=lifts) for contact, lifts in zip(contacts, drawn.lifts, strict=True)
-            ]
+            mode, drawn, notes, lifts, uncertainty = self._draws.drawn(
+                sample, axes, problem, count, rates, deviation, now, plane.axis
+            )
+            answer = self._stopped(problem, drawn, least)
+            contacts = outcomes_of(answer, collision.contacts, positions, repeat(normal))
+            contacts = [one._replace(lift_probability=lift) for one, lift in zip(contacts, lifts, strict=True)]
         vx, vy, vz, wx, wy, wz, lost = answer[:ANSWER]
         after = SpatialTwist((vx, vy, vz), (wx, wy, wz))
         stood, struck = contacts[:count], contacts[count:]
@@ -110,7 +111,7 @@ class SpatialImpactModel:
             told |= Flag.POINT_APPROACHES
         return Touchdown(
             lead_time=collision.lead_time,
-            mode=mode_of_contacts(stood, struck, normal, least) if drawn is None else drawn.mode,
+            mode=mode,
             before=planar_twist(before, ahead, normal, axis),
             after=planar_twist(after, ahead, normal, axis),
             impulses=(along_plane(stood, ahead, normal), along_plane(struck, ahead, normal)),
@@ -141,7 +142,7 @@ class SpatialImpactModel:
             before_6d=before,
             after_6d=after,
             contacts=tuple(contacts),
-            uncertainty=None if drawn is None else drawn.uncertainty,
+            uncertainty=uncertainty,
         )
 
     def _solve(

@@ -102,18 +102,10 @@ class Arrival(NamedTuple):
     height: float | None
 
 
-class ArrivalCandidate(NamedTuple):
-    """The cubic of the frames up to `last`, if the point arrived between that and the next frame.
-
-    `left` is the least square of what it leaves of them; `here` and `there` are its gaps (m) at the two frames, with
-    what is unsure of them; `near` are the sums over the frames near the ground up to the last.
-    """
-
-    last: int
-    left: float
-    here: tuple[float, float]
-    there: tuple[float, float]
-    near: tuple[float, float]
+ArrivalCandidate = tuple[int, float, tuple[float, float], tuple[float, float], tuple[float, float]]
+"""The cubic of the frames up to the one of that index, if the point arrived between that and the next frame: the least
+square of what it leaves of them; its gaps (m) at the two frames, each with what is unsure of it; the sums over the
+frames near the ground up to that one."""
 
 
 class ArrivalFit:
@@ -173,7 +165,7 @@ class ArrivalFit:
             s = (one.stamp - frames[0].stamp) / (SCALE * NANOSECONDS)
             off = frames[0].gap - self._level + value_of(cubic, s)
             ends.append((off, square_of(factor, (1.0, s, s * s, s * s * s)) + bends))
-        self._tried.append(ArrivalCandidate(last=k - 1, left=left, here=ends[0], there=ends[1], near=self._near))
+        self._tried.append((k - 1, left, ends[0], ends[1], self._near))
 
     def arrival(self, sinks: float = 0.0) -> Arrival:
         """The arrival, once the point rests, at a ground into which it `sinks` (m).
@@ -189,19 +181,19 @@ class ArrivalFit:
         stamp = frames[min(last + 1, len(frames) - 1)].stamp
         # What comes to rest does so near the level of the others, by half a tolerance or so: as good as so many frames.
         known = (2.0 * noise.gap / self._tolerance) ** 2
-        for one in self._tried:
-            near, square = self._near[0] - one.near[0], self._near[1] - one.near[1]
-            rest = near / (len(frames) - 1 - one.last + known)
-            here, there = one.here[0] - rest, one.there[0] - rest
-            cost, later = here * here / one.here[1], there * there / one.there[1]
+        for until, leaves, (here, unsure), (there, unsure_there), (near, square) in self._tried:
+            near, square = self._near[0] - near, self._near[1] - square
+            rest = near / (len(frames) - 1 - until + known)
+            here, there = here - rest, there - rest
+            cost, later = here * here / unsure, there * there / unsure_there
             part = 0.0 if cost <= later else 1.0
             if here > 0.0 > there:
                 part, cost = here / (here - there), 0.0
-            left = one.left + square - near * rest + min(cost, later)
+            left = leaves + square - near * rest + min(cost, later)
             if left < best - SAME * noise.gap**2:
-                best, air, last, level = left, one.last + 1, one.last if part > 0.0 else one.last - 1, rest
-                before = frames[one.last].stamp
-                stamp = before + round(part * (frames[one.last + 1].stamp - before))
+                best, air, last, level = left, until + 1, until if part > 0.0 else until - 1, rest
+                before = frames[until].stamp
+                stamp = before + round(part * (frames[until + 1].stamp - before))
         # Soft contacts yield further than they stay: where the level is known the surface is, too.
         is_soft = self._is_known and max(self._least, CLEAR * noise.gap) < -level < YIELDS * self._tolerance
         depth = -level if is_soft else sinks
