@@ -27,6 +27,7 @@ from .vectors import (
     to_body,
     to_world,
     total,
+    turn_to,
     turned,
 )
 
@@ -47,7 +48,7 @@ class SpatialModel:
         (xx, xy, xz), (_, yy, yz), (_, _, zz) = scene.inertia
         self._inertia = [part / scene.mass for part in (xx, yy, zz, xy, xz, yz)]
         self._arms = [add(point, scene.center_of_mass, -1.0) for point in points]
-        self._frame = frame_of(scene.normal)
+        self._frame = turn_to(scene.normal)
         self._axes = axes_of(self._frame)
         self.scatter, self.impact = scatter, SpatialImpactModel(scene)
         prepare()
@@ -203,12 +204,3 @@ def prepare() -> None:
     """Have the law code compiled, where it can be, or loaded: for the first touchdown that would take too long."""
     still = SpatialState((0.0, 0.0, 1.0), (0.0, 0.0, 0.0, 1.0), ORIGIN, ORIGIN)
     fall(still, (1.0, 1.0, 1.0, 0.0, 0.0, 0.0), [ORIGIN], horizon=1e-3)
-
-
-def frame_of(normal: Vector3) -> Quaternion:
-    """The shortest rotation that takes z to a unit normal."""
-    x, y, z = normal
-    if z < -1.0 + 1e-12:
-        return 1.0, 0.0, 0.0, 0.0
-    scale = 1.0 / sqrt(2.0 * (1.0 + z))
-    return -y * scale, x * scale, 0.0, (1.0 + z) * scale

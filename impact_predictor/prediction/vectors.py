@@ -157,6 +157,16 @@ def turned(orientation: Quaternion, rotation: Vector3) -> Quaternion:
     return x * unit, y * unit, z * unit, w * unit
 
 
+def turn_to(direction: Vector3) -> Quaternion:
+    """The shortest rotation that turns z to a unit vector."""
+    x, y, z = direction
+    if z < -1.0 + 1e-12:
+        return 1.0, 0.0, 0.0, 0.0
+    # Half way between both: their cross product and 1 + their scalar product, made a unit.
+    unit = 1.0 / sqrt(2.0 * (1.0 + z))
+    return -y * unit, x * unit, 0.0, (1.0 + z) * unit
+
+
 def rotation_between(first: Quaternion, second: Quaternion, rate: float = 1.0) -> Vector3:
     """The rotation vector in rad, along the first one's axes, that leads from one orientation to another, times a rate.
 

@@ -10,7 +10,20 @@ from typing import Final, NamedTuple
 from ...mechanics.types import Mode
 from ...prediction.scene import Scene
 from ...prediction.types import Foot, Geometry, Prediction, Quaternion, Touchdown, Vector3
-from ...prediction.vectors import Axes, add, axes_of, combine, composed, cross, dot, mean, times, to_body, to_world
+from ...prediction.vectors import (
+    Axes,
+    add,
+    axes_of,
+    combine,
+    composed,
+    cross,
+    dot,
+    mean,
+    times,
+    to_body,
+    to_world,
+    turn_to,
+)
 from ...stamps import NANOSECONDS
 from .message import CUBE, CYLINDER, LINE_LIST, LOOKS, NOWHERE, UNTURNED, Colour, Marker
 
@@ -130,16 +143,6 @@ def about(axis: Vector3, angle: float) -> Quaternion:
     """The rotation about a unit vector by an angle in rad."""
     x, y, z = times(axis, sin(0.5 * angle))
     return x, y, z, cos(0.5 * angle)
-
-
-def turn_to(direction: Vector3) -> Quaternion:
-    """A rotation that turns z to a unit vector."""
-    x, y, z = direction
-    if z < -0.999999:
-        return 1.0, 0.0, 0.0, 0.0
-    # Half way between both: their cross product and 1 + their scalar product, made a unit.
-    unit = 1.0 / sqrt(2.0 + 2.0 * z)
-    return -y * unit, x * unit, 0.0, (1.0 + z) * unit
 
 
 class SeenPose(NamedTuple):

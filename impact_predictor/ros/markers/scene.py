@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 from ...prediction.scene import Scene
 from ...prediction.types import Geometry, Moment, Prediction, Quaternion, Status, Vector3
-from ...prediction.vectors import Axes, add, axes_of, combine, dot
-from .body import PAUSE, BodyMarkers, turn_to
+from ...prediction.vectors import Axes, add, axes_of, combine, dot, turn_to
+from .body import PAUSE, BodyMarkers
 from .message import DELETE, DELETE_ALL, NO_LOOK, NOWHERE, Marker, encode_markers
 
 if TYPE_CHECKING:

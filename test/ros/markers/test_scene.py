@@ -14,9 +14,9 @@ from messages_of_rosbags import TYPESTORE, padded, serialize
 from impact_predictor.prediction.predictor import Predictor
 from impact_predictor.prediction.scene import MovingDeck, Scene, Watching
 from impact_predictor.prediction.types import Felt, Geometry, Moment, Prediction, Sample, Status, Vector3
-from impact_predictor.prediction.vectors import axes_of, to_world
+from impact_predictor.prediction.vectors import axes_of, to_world, turn_to
 from impact_predictor.prediction.watch.watch import Level, Report
-from impact_predictor.ros.markers.body import PAUSE, shape_of, turn_to
+from impact_predictor.ros.markers.body import PAUSE, shape_of
 from impact_predictor.ros.markers.message import (
     ARROW,
     CUBE,
