@@ -23,7 +23,6 @@ TRAILER_OF_DOUBLES: Final = 4
 
 OK, WARN, ERROR, STALE = range(4)
 """The levels of a diagnostic_msgs/DiagnosticStatus."""
-_SECONDS_RANGE: Final = (-(2**31), 2**31 - 1)
 
 
 Decoded = TypeVar("Decoded")
@@ -172,11 +171,15 @@ def string(text: str) -> bytes:
     return (LENGTHS[size] if size < _SHORT else _pack_length(size + 1)) + raw + PADDING[size & 3]
 
 
-def stamp(nanoseconds: int) -> bytes:
-    """A builtin_interfaces/Time; beyond the range of its int32 seconds (the year 2038) it stays at the end of it."""
+def seconds_and_rest(nanoseconds: int) -> tuple[int, int]:
+    """The numbers of a builtin_interfaces/Time: beyond the range of its int32 seconds (the year 2038) the end of it."""
     seconds, rest = divmod(nanoseconds, NANOSECONDS)
-    lowest, highest = _SECONDS_RANGE
-    return _pack_stamp(min(max(seconds, lowest), highest), rest)
+    return min(max(seconds, -(2**31)), 2**31 - 1), rest
+
+
+def stamp(nanoseconds: int) -> bytes:
+    """A builtin_interfaces/Time."""
+    return _pack_stamp(*seconds_and_rest(nanoseconds))
 
 
 _name = lru_cache(maxsize=1024)(string)

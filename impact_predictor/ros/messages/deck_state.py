@@ -115,10 +115,6 @@ def _header(deck: DeckReports) -> tuple[int, str]:
     return deck.stamp, "" if deck.report is None else deck.report.body
 
 
-def _leads(_: DeckReports) -> tuple[float, ...]:
-    return LEADS
-
-
 DECK_STATE: Final = Message(
     "DeckState",
     "A support and the units under watch on it, once a second and when a level changes.\n\n"
@@ -128,7 +124,7 @@ DECK_STATE: Final = Message(
         0,
         {
             "header": field("header", HEADER, "", "newest stamp, and the frame of the support", _header),
-            "leads": field("leads", _PER_LEAD._replace(numbers=tuple), "s", "ahead", _leads),
+            "leads": field("leads", _PER_LEAD._replace(numbers=tuple), "s", "ahead", lambda _: LEADS),
         },
     ),
     MessageSection(

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
+from operator import attrgetter
 from typing import TYPE_CHECKING, Any, Final
 
 from ...mechanics.types import Mode
@@ -36,6 +37,7 @@ from .kinds import (
     TWIST,
     VECTOR,
     Field,
+    Kind,
     field,
     text,
 )
@@ -80,21 +82,18 @@ PREDICTION: Final = Table(
 """Of each sample; without a touchdown there is no more."""
 
 
-def _points(touchdown: Touchdown) -> tuple[int, ...] | None:
-    return tuple([one.point for one in touchdown.contacts]) or None
+def _of_each(get: Callable[[Any], object], touchdown: Touchdown) -> tuple[object, ...] | None:
+    """What is got of each contact; None where there are no contacts, or nobody knows it of one."""
+    each = tuple([get(one) for one in touchdown.contacts])
+    return None if None in each else each or None
 
 
-def _states(touchdown: Touchdown) -> tuple[str, ...] | None:
-    return tuple([one.state.name for one in touchdown.contacts]) or None
+def _unless_empty(get: Callable[[Any], Any], touchdown: Touchdown) -> Any:
+    return get(touchdown) or None
 
 
 def _impulses(touchdown: Touchdown) -> tuple[float, ...] | None:
     return tuple([part for one in touchdown.contacts for part in one.impulse]) or None
-
-
-def _lifts(touchdown: Touchdown) -> tuple[object, ...] | None:
-    chances = tuple([one.lift_probability for one in touchdown.contacts])
-    return None if None in chances else chances or None
 
 
 def _of_drives(touchdown: Touchdown) -> float | None:
@@ -104,14 +103,6 @@ def _of_drives(touchdown: Touchdown) -> float | None:
 def _change(touchdown: Touchdown) -> SpatialTwist | None:
     (before, spun), (after, spins) = touchdown.before_6d, touchdown.after_6d
     return touchdown.bound and SpatialTwist(add(after, before, -1.0), add(spins, spun, -1.0))
-
-
-def _joints(touchdown: Touchdown) -> tuple[str, ...] | None:
-    return touchdown.joints or None
-
-
-def _jumps(touchdown: Touchdown) -> tuple[float, ...] | None:
-    return touchdown.jumps or None
 
 
 _BOUNDS: Final = ", ".join([bound.value for bound in Bound])
@@ -138,10 +129,22 @@ TOUCHDOWN: Final = Table(
     field("closing_spread", NUMBER, "s", "between the closing of the two ends of the striking edge"),
     field("offset", NUMBER, "m", "of the contacts from the plane of the mass centre"),
     field("kind", TEXT, "", "what stands and what strikes"),
-    field("contacts", INDICES, "", "indices of the points that take part", _points),
-    field("states", TEXTS, "", "what each of them does: LEAVES, SLIPS, STICKS or NEARS", _states),
+    field("contacts", INDICES, "", "indices of the points that take part", partial(_of_each, attrgetter("point"))),
+    field(
+        "states",
+        TEXTS,
+        "",
+        "what each of them does: LEAVES, SLIPS, STICKS or NEARS",
+        partial(_of_each, attrgetter("state.name")),
+    ),
     field("impulses", NUMBERS, "N s", "on each of them: x y z in the world", _impulses),
-    field("lifts", NUMBERS, "1", "probability that each of them leaves, with uncertainty.samples", _lifts),
+    field(
+        "lifts",
+        NUMBERS,
+        "1",
+        "probability that each of them leaves, with uncertainty.samples",
+        partial(_of_each, attrgetter("lift_probability")),
+    ),
     field("before_6d", TWIST, "m/s, rad/s", "twist of the mass centre right before, in the support's frame"),
     field("after_6d", TWIST, "m/s, rad/s", "twist of the mass centre right after, in the support's frame"),
     field("bound", BOUND, "", f"what the impulses of feet are: {_BOUNDS}"),
@@ -153,8 +156,14 @@ TOUCHDOWN: Final = Table(
         _of_drives,
     ),
     field("trunk", TWIST, "m/s, rad/s", "what the impact changes of the twist of a machine with feet", _change),
-    field("joints", TEXTS, "", "names of the joints of robot.urdf", _joints),
-    field("joint_jumps", NUMBERS, "rad/s", "changes of their velocities in the impact", _jumps),
+    field("joints", TEXTS, "", "names of the joints of robot.urdf", partial(_unless_empty, attrgetter("joints"))),
+    field(
+        "joint_jumps",
+        NUMBERS,
+        "rad/s",
+        "changes of their velocities in the impact",
+        partial(_unless_empty, attrgetter("jumps")),
+    ),
 )
 """Of the touchdown ahead."""
 
@@ -205,18 +214,19 @@ FOOT: Final = Table(
 """Of each foot of a walking machine, in a status of its own."""
 
 
-def _of_touchdown(get: Callable[[Touchdown], Any], score: Score) -> Any:
-    return get(score.touchdown)
-
-
-def _scored(key: str, new: str = "") -> Field:
-    """A field of the touchdown that is scored, perhaps by a new key."""
+def _scored(key: str) -> Field:
+    """A field of the touchdown that is scored."""
     one = TOUCHDOWN.fields[key]
-    return one._replace(key=new or key, get=partial(_of_touchdown, one.get))
+    return one._replace(get=attrgetter(f"touchdown.{key}"))
 
 
 def _of_spatial(name: str, score: Score) -> Any:
     return getattr(score.spatial, name, None)
+
+
+def _spatial(key: str, kind: Kind, unit: str, meaning: str, name: str) -> Field:
+    """A field of the score of the whole twist, where there is one."""
+    return field(key, kind, unit, meaning, partial(_of_spatial, name))
 
 
 def _lift(which: int, score: Score) -> Lift | None:
@@ -242,22 +252,16 @@ SCORE: Final = Table(
     *map(_scored, ("flags", "law", "old", "new")),
     field("announced", NUMBER, "s", "lead time of the first prediction"),
     *map(_scored, ("lead_time", "half_distance", "off_axis", "lateral", "closing_spread", "offset", "before")),
-    _scored("after", "predicted"),
+    _scored("after")._replace(key="predicted"),
     field("measured", PLANAR_TWIST, "m/s, rad/s", "what the samples after it show, as predicted"),
     field("relative_error", NUMBER, "1", "of the predicted twist; not known where there is nothing to compare"),
     field("kind", TEXT, "", "what stood and what struck"),
     field("leftover_6d", FLAGS, "", "why the whole twist is not scored, or NONE"),
-    field("time_error", NUMBER, "s", "by which the touchdown was predicted too late", partial(_of_spatial, "late")),
+    _spatial("time_error", NUMBER, "s", "by which the touchdown was predicted too late", "late"),
     field("before_6d", TWIST, "m/s, rad/s", "twist of the mass centre before, in the support's frame"),
-    field("predicted_6d", TWIST, "m/s, rad/s", "as predicted, when it is measured", partial(_of_spatial, "predicted")),
-    field(
-        "measured_6d",
-        TWIST,
-        "m/s, rad/s",
-        "between the second and the third frame after",
-        partial(_of_spatial, "measured"),
-    ),
-    field("relative_error_6d", NUMBER, "1", "of the whole predicted twist", partial(_of_spatial, "error")),
+    _spatial("predicted_6d", TWIST, "m/s, rad/s", "as predicted, when it is measured", "predicted"),
+    _spatial("measured_6d", TWIST, "m/s, rad/s", "between the second and the third frame after", "measured"),
+    _spatial("relative_error_6d", NUMBER, "1", "of the whole predicted twist", "error"),
     field("simple_errors_6d", SIMPLE_ERRORS, "1", f"those of simple answers, where it is scored: {_ANSWERS}", _simple),
     field("lift.old", LIFT, "1", f"of the old contact: {_LIFTS}", partial(_lift, 0)),
     field("lift.new", LIFT, "1", f"of the new contact: {_LIFTS}", partial(_lift, 1)),

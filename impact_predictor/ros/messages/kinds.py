@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable
 from enum import Enum
 from functools import lru_cache
 from math import nan
@@ -12,7 +12,7 @@ from typing import Any, Final, NamedTuple
 from ...mechanics.types import Flag, Mode
 from ...prediction.skill import SIMPLE
 from ...prediction.types import Bound, Covariance, Leftover, SpatialTwist, Status
-from ...stamps import NANOSECONDS
+from ..cdr import seconds_and_rest
 
 PACKAGE: Final = "impact_predictor_msgs"
 
@@ -61,7 +61,7 @@ def _truth(value: bool) -> str:
     return "true" if value else "false"
 
 
-def _items(items: Sequence[object]) -> str:
+def _items(items: Iterable[object]) -> str:
     return " ".join(map(str, items))
 
 
@@ -83,18 +83,8 @@ def text(value: object) -> str:
     return repr(float(value)) if known is None else known(value)  # type: ignore[arg-type]
 
 
-def seconds_and_rest(nanoseconds: int) -> tuple[int, int]:
-    """The numbers of a builtin_interfaces/Time, which ends with the year 2038."""
-    seconds, rest = divmod(nanoseconds, NANOSECONDS)
-    return min(max(seconds, -(2**31)), 2**31 - 1), rest
-
-
-def _of_pair(pair: tuple[Iterable[Any], Iterable[Any]]) -> list[Any]:
-    return [*pair[0], *pair[1]]
-
-
-def _of_pose(pose: tuple[Iterable[Any], Iterable[Any], Iterable[Any]]) -> list[Any]:
-    return [*pose[0], *pose[1], *pose[2]]
+def _of_parts(parts: tuple[Iterable[Any], ...]) -> list[Any]:
+    return [number for part in parts for number in part]
 
 
 def _of_twist(twist: SpatialTwist) -> list[float]:
@@ -135,10 +125,10 @@ POINT: Final = _floats("geometry_msgs/Point", 3, ".x", ".y", ".z")
 VECTOR: Final = _floats("geometry_msgs/Vector3", 3, ".x", ".y", ".z")
 PLANAR_TWIST: Final = _floats(f"{PACKAGE}/PlanarTwist", 3, ".vx", ".vy", ".omega")
 TWIST: Final = _floats("geometry_msgs/Twist", 6, ".vx", ".vy", ".vz", ".wx", ".wy", ".wz", numbers=_of_twist)
-POSE: Final = _floats("geometry_msgs/PoseWithCovariance", 43, numbers=_of_pose)
-TWIST_WITH_COVARIANCE: Final = _floats("geometry_msgs/TwistWithCovariance", 42, numbers=_of_pose)
+POSE: Final = _floats("geometry_msgs/PoseWithCovariance", 43, numbers=_of_parts)
+TWIST_WITH_COVARIANCE: Final = _floats("geometry_msgs/TwistWithCovariance", 42, numbers=_of_parts)
 IMPULSES: Final = _floats(
-    "float64[4]", 4, ".old.normal", ".old.tangent", ".new.normal", ".new.tangent", numbers=_of_pair
+    "float64[4]", 4, ".old.normal", ".old.tangent", ".new.normal", ".new.tangent", numbers=_of_parts
 )
 PROBABILITIES: Final = _floats("float64[7]", 7, *[f".{mode.name}" for mode in sorted(Mode)])
 SIMPLE_ERRORS: Final = _floats(f"float64[{len(SIMPLE)}]", len(SIMPLE), *[f".{name}" for name in SIMPLE])

@@ -8,9 +8,9 @@ from struct import Struct
 from types import MappingProxyType
 from typing import Any, Final, NamedTuple
 
-from ..cdr import HEADER_SIZE, LENGTHS, LITTLE_ENDIAN, LITTLE_ENDIAN_HEADER, PADDING
+from ..cdr import HEADER_SIZE, LENGTHS, LITTLE_ENDIAN, LITTLE_ENDIAN_HEADER, PADDING, stamp
 from .fields import Table
-from .kinds import HEADER, INDICES, NUMBERS, PACKAGE, TEXT, TEXTS, Field, Kind, seconds_and_rest
+from .kinds import HEADER, INDICES, NUMBERS, PACKAGE, TEXT, TEXTS, Field, Kind
 
 _SIZES: Final = {"b": 1, "B": 1, "?": 1, "i": 4, "I": 4, "d": 8}
 _LARGEST: Final = 8
@@ -162,7 +162,7 @@ def _write_text(data: bytearray, text: str) -> None:
 
 def _write_header(data: bytearray, header: tuple[int, str]) -> None:
     """A std_msgs/Header, which begins a message: its stamp in ns, and its frame."""
-    data += LITTLE_ENDIAN.stamp.pack(*seconds_and_rest(header[0]))
+    data += stamp(header[0])
     _write_text(data, header[1])
 
 

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from operator import itemgetter
 from typing import Any, Final
 
 from ...mechanics.types import ContactState, Flag, Mode
-from ...prediction.types import Bound, Covariance, Foot, Leftover, Prediction, Sample, Status
+from ...prediction.types import Bound, Covariance, Leftover, Prediction, Status
 from ...stamps import NANOSECONDS
 from .fields import FOOT, LANDING, MARGINS, PREDICTION, SCORE, TOUCHDOWN, UNCERTAINTY
 from .kinds import (
@@ -23,15 +24,11 @@ from .kinds import (
     field,
 )
 from .message import Message, MessageSection, fields_of
-
-
-def seen_from(prediction: Prediction) -> Sample:
-    """The sample in the frame in which is told of an answer: over a moving support its own."""
-    return prediction.relative or prediction.sample
+from .outputs import frame_of
 
 
 def _header(prediction: Prediction) -> tuple[int, str]:
-    return prediction.sample.stamp, seen_from(prediction).frame_id
+    return prediction.sample.stamp, frame_of(prediction)
 
 
 def stamp_of(prediction: Prediction) -> int | None:
@@ -40,25 +37,17 @@ def stamp_of(prediction: Prediction) -> int | None:
     return None if touchdown is None else prediction.sample.stamp + round(touchdown.lead_time * NANOSECONDS)
 
 
-def _first_to_land(prediction: Prediction) -> Foot | None:
-    landing = [foot for foot in prediction.feet if foot.lead_time is not None]
-    return min(landing, key=_lead_time) if landing and prediction.touchdown is not None else None
-
-
-def _lead_time(foot: Foot) -> float:
-    return foot.lead_time or 0.0
-
-
 def _deviation(prediction: Prediction) -> float | None:
-    foot = _first_to_land(prediction)
-    return None if foot is None else foot.landing_deviation
+    """That of the foot which lands first, of a machine for which a touchdown is ahead."""
+    landing = [(foot.lead_time, foot) for foot in prediction.feet if foot.lead_time is not None]
+    return min(landing, key=itemgetter(0))[1].landing_deviation if landing and prediction.touchdown else None
 
 
 def _pose(prediction: Prediction) -> tuple[Any, ...] | None:
     touchdown = prediction.touchdown
     if touchdown is None:
         return None
-    return touchdown.position, touchdown.orientation, seen_from(prediction).pose_covariance
+    return touchdown.position, touchdown.orientation, (prediction.relative or prediction.sample).pose_covariance
 
 
 def _twist(prediction: Prediction) -> tuple[Any, ...] | None:
