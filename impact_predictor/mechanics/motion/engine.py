@@ -11,7 +11,7 @@ from typing import Final, NamedTuple
 from ..impact.contacts import MINUS, OPEN, PLUS
 from ..types import TwoPointBody, Vector
 from .equations import rocking_body, turned, two_points
-from .events import End, Event
+from .events import SLIP_ROUNDING, End, Event
 from .phases import FlightPhase, MotionPhase, PhaseEnd, RockingProblem
 from .states import JAM, rest, state_of_one, states_of_both
 from .support import FeltSupport, PlanarState
@@ -26,8 +26,6 @@ _MOST_EVENTS: Final = 100
 _MOST_STEPS: Final = 1000
 _STUCK: Final = 1000
 """Events without any time between them; more come only from rounding."""
-SLIP_ROUNDING: Final = 1e-12
-"""A slip this small, relative to the speeds it is the difference of, is none: states come through conversions."""
 
 
 class Strike(NamedTuple):

@@ -15,8 +15,10 @@ Condition = tuple[float, float]
 Sinusoid = tuple[float, float, float]
 """Amplitudes of cosine and sine, and their rate."""
 
-_ROUNDING: Final = 8.0 * 2.0**-52
+ROUNDING: Final = 8.0 * 2.0**-52
 """A few units in the last place of a value that is a sum of a few terms."""
+SLIP_ROUNDING: Final = 1e-12
+"""A slip this small, relative to the speeds it is the difference of, is none: states come through conversions."""
 _MAX_ADVANCES: Final = 1000
 """Several times what the worst grazing needs."""
 _CLOSE: Final = 1e-7
@@ -104,20 +106,20 @@ def first_descent(
         if leaving and s == 0.0:
             bow = max(0.0, bow)
         top_speed, top_bend = abs(slope) + abs(curvature) * s + speed, abs(curvature) + bend
-        rounding = _ROUNDING * (abs(level) + amplitude + top_speed * s)
+        rounding = ROUNDING * (abs(level) + amplitude + top_speed * s)
         if value > rounding:
             step = safe_step(value, change, fall)
             if base > amplitude:
                 step = max(step, safe_step(base - amplitude, base_rate, max(0.0, -curvature)))
-        elif abs(change) > _ROUNDING * (top_speed + top_bend * s):
+        elif abs(change) > ROUNDING * (top_speed + top_bend * s):
             if change < 0.0:
                 return s
             step = safe_step(change, bow, jolt)
-        elif abs(bow) > _ROUNDING * (top_bend + jolt * s):
+        elif abs(bow) > ROUNDING * (top_bend + jolt * s):
             if bow < 0.0:
                 return s
             step = safe_step(bow, jerk, snap)
-        elif jerk > _ROUNDING * jolt:
+        elif jerk > ROUNDING * jolt:
             step = safe_step(0.0, jerk, snap)
         else:
             return s if jolt > 0.0 else math.inf

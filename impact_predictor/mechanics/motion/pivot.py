@@ -11,11 +11,9 @@ import math
 from typing import Final, NamedTuple
 
 from ..types import Vector
-from .events import Event, first_descent
+from .events import ROUNDING, Event, first_descent
 
-_ROUNDING: Final = 8.0 * 2.0**-52
-"""A few units in the last place of a value that is a sum of a few terms."""
-_FULL_TURN: Final = 2.0 * math.pi
+FULL_TURN: Final = 2.0 * math.pi
 
 
 class Pivot(NamedTuple):
@@ -45,7 +43,7 @@ def turn(arm: Vector, omega: float, travel: Vector, rho_squared: float, friction
     inertia = rho_squared + radius * radius
     stiffness = radius * weight / inertia if radius > 0.0 else 0.0
     slope = math.atan2(gravity[0], -gravity[1])  # of "up" against the support's normal, CCW
-    tilt = math.remainder(math.atan2(-arm[0], arm[1]) - slope, _FULL_TURN)  # from the balance, CCW
+    tilt = math.remainder(math.atan2(-arm[0], arm[1]) - slope, FULL_TURN)  # from the balance, CCW
     fall = omega or (tilt if stiffness > 0.0 else 0.0)
     direction = (fall > 0.0) - (fall < 0.0)
     reach = travel[direction > 0] if direction else math.inf
@@ -55,7 +53,7 @@ def turn(arm: Vector, omega: float, travel: Vector, rho_squared: float, friction
         )
     lean, rate = direction * tilt, abs(omega)
     crest = _to_standstill(stiffness, lean, rate) if direction else 0.0
-    last = min(reach, crest, _FULL_TURN)
+    last = min(reach, crest, FULL_TURN)
 
     if friction < math.inf:
         energy = omega * omega + 2.0 * stiffness * math.cos(tilt)
@@ -108,7 +106,7 @@ def _to_standstill(stiffness: float, lean: float, rate: float) -> float:
     climb = rate * rate / (4.0 * stiffness)
     stop = 2.0 * math.asin(math.sqrt(height - climb)) if height > climb else 0.0
     if lean >= 0.0:
-        return _FULL_TURN - stop - lean
+        return FULL_TURN - stop - lean
     # The difference stop + lean would lose a small climb.
     return 2.0 * math.asin(min(1.0, climb / math.sin(0.5 * (stop - lean))))
 
@@ -188,7 +186,7 @@ def _first_slip(reaction: tuple[float, float, float], tilt: float, direction: in
     single = -spin * math.cos(tilt - edge), direction * spin * math.sin(tilt - edge)
     double = 1.5 * pull * math.cos(2.0 * tilt - edge), -1.5 * direction * pull * math.sin(2.0 * tilt - edge)
     inside = level + single[0] + double[0]
-    if inside < -_ROUNDING * (weight + abs(spin) + 2.0 * pull):
+    if inside < -ROUNDING * (weight + abs(spin) + 2.0 * pull):
         return 0.0
     cosine, sine = math.cos(last), math.sin(last)
     inside_last = level + single[0] * cosine + single[1] * sine

@@ -8,9 +8,9 @@ from ..impact import number_of, solve_impact
 from ..impact.answer import STAYS
 from ..types import Flag, Twist, TwoPointBody, Validity
 from .accumulation import FollowedImpact, ImpactSequence, Limit
-from .engine import SLIP_ROUNDING, MotionEngine, Strike
+from .engine import MotionEngine, Strike
 from .equations import rocking_body
-from .events import End
+from .events import SLIP_ROUNDING, End
 from .integrate import Instant
 from .phases import MotionPhase, RockingProblem
 from .support import FixedSupport, PlanarState, Support

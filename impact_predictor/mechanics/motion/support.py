@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ...errors import InputError
 from ..bodies import sine_and_cosine
@@ -37,21 +37,6 @@ class PlanarState(NamedTuple):
     vx: float
     vy: float
     omega: float
-
-
-class FeltSupport(Protocol):
-    """What motion between two impacts asks of a support; any object that answers it will do."""
-
-    @property
-    def period(self) -> float:
-        """The shortest time in s in which its motion swings to and fro; inf where it does not swing."""
-
-    @property
-    def gravity(self) -> float:
-        """Gravity in m/s^2."""
-
-    def felt(self, time: float) -> FrameAcceleration:
-        """What a body at rest at the frame's origin feels at a time in s."""
 
 
 class SupportMotion(NamedTuple):
@@ -155,6 +140,10 @@ class MovingSupport:
 
 
 Support = FixedSupport | MovingSupport
+
+FeltSupport = Support | FeltPolynomials
+"""What motion between two impacts asks of a support: `felt` by a body that rests at its origin, `gravity` in m/s^2, and
+the `period` in s in which its motion swings to and fro, inf where it does not."""
 
 
 def in_world(motion: SupportMotion, state: PlanarState) -> PlanarState:

@@ -18,16 +18,11 @@ from enum import IntEnum
 from typing import NamedTuple
 
 from ..types import Vector
-from .events import Event, first_descent
-from .pivot import turn
+from .events import ROUNDING, SLIP_ROUNDING, Event, first_descent
+from .pivot import FULL_TURN, turn
 from .slip import slide
 from .support import PlanarState
 
-_ROUNDING = 8.0 * 2.0**-52
-"""A few units in the last place of a value that is a sum of a few terms."""
-_FULL_TURN = 2.0 * math.pi
-_SLIP_ROUNDING = 1e-12
-"""A slip this small, relative to the speeds it is the difference of, is none: states come through conversions."""
 _MAX_PHASES = 32
 """More has only a body that hangs through its support and swings there."""
 
@@ -96,7 +91,7 @@ def next_touchdown(
     arm_x, arm_y = _from_contact(foot_x, foot_y, angle)
     contact_x = state.x - arm_x
     slip = state.vx + omega * arm_y
-    if friction == math.inf or abs(slip) <= _SLIP_ROUNDING * (abs(state.vx) + abs(omega) * (abs(foot_x) + abs(foot_y))):
+    if friction == math.inf or abs(slip) <= SLIP_ROUNDING * (abs(state.vx) + abs(omega) * (abs(foot_x) + abs(foot_y))):
         slip = 0.0
     direction = (slip > 0.0) - (slip < 0.0)
 
@@ -145,7 +140,7 @@ def _ahead(arms: list[_Arm], start: float, turned: float) -> tuple[Vector, tuple
     points on one such line the farthest strikes. The body's angle is start + turned, in two parts because a body that
     rises from the support and falls back may turn by less than the rounding of its angle.
     """
-    rounding = _ROUNDING * (abs(start) + math.pi)
+    rounding = ROUNDING * (abs(start) + math.pi)
     back, forth, back_length, forth_length, back_point, forth_point = math.inf, math.inf, 0.0, 0.0, -1, -1
     for bearing, bearing_back, length, point in arms:
         travel = _away(bearing + start, turned, rounding)
@@ -159,9 +154,9 @@ def _ahead(arms: list[_Arm], start: float, turned: float) -> tuple[Vector, tuple
 
 def _away(travel: float, turned: float, rounding: float) -> float:
     """The turn until a point touches, less what is turned already."""
-    travel %= _FULL_TURN
+    travel %= FULL_TURN
     if travel > 1.5 * math.pi:
-        travel -= _FULL_TURN  # below the support and moving down
+        travel -= FULL_TURN  # below the support and moving down
     if -rounding <= travel <= rounding:
         travel = 0.0
     travel += turned
