@@ -47,41 +47,37 @@ class RobotFiles(NamedTuple):
     sole: Sole | None = None
 
 
-_FOUR: Final = ("FL_foot", "FR_foot", "RL_foot", "RR_foot")
 _NAMED: Final = {
-    "a1": RobotFiles(Path("a1_description/urdf/a1.urdf"), _FOUR, Path("a1_description/srdf/a1.srdf")),
-    "anymal": RobotFiles(
-        Path("anymal_b_simple_description/robots/anymal.urdf"),
-        ("LF_FOOT", "RF_FOOT", "LH_FOOT", "RH_FOOT"),
-        Path("anymal_b_simple_description/srdf/anymal.srdf"),
+    "a1": ("a1_description/urdf/a1.urdf", "a1_description/srdf/a1.srdf", "FL_foot FR_foot RL_foot RR_foot", None),
+    "anymal": (
+        "anymal_b_simple_description/robots/anymal.urdf",
+        "anymal_b_simple_description/srdf/anymal.srdf",
+        "LF_FOOT RF_FOOT LH_FOOT RH_FOOT",
         Sole(radius=0.031),
     ),
-    "bolt": RobotFiles(
-        Path("bolt_description/robots/bolt.urdf"),
-        ("FL_FOOT", "FR_FOOT"),
-        Path("bolt_description/srdf/bolt.srdf"),
-        Sole(radius=0.016),
-    ),
-    "go1": RobotFiles(Path("go1_description/urdf/go1.urdf"), _FOUR, Path("go1_description/srdf/go1.srdf")),
-    "hyq": RobotFiles(
-        Path("hyq_description/robots/hyq_no_sensors.urdf"),
-        ("lf_foot", "rf_foot", "lh_foot", "rh_foot"),
-        Path("hyq_description/srdf/hyq.srdf"),
+    "bolt": ("bolt_description/robots/bolt.urdf", "bolt_description/srdf/bolt.srdf", "FL_FOOT FR_FOOT", Sole(0.016)),
+    "go1": ("go1_description/urdf/go1.urdf", "go1_description/srdf/go1.srdf", "FL_foot FR_foot RL_foot RR_foot", None),
+    "hyq": (
+        "hyq_description/robots/hyq_no_sensors.urdf",
+        "hyq_description/srdf/hyq.srdf",
+        "lf_foot rf_foot lh_foot rh_foot",
         Sole(radius=0.021),
     ),
-    "solo12": RobotFiles(
-        Path("solo_description/robots/solo12.urdf"),
-        ("FL_FOOT", "FR_FOOT", "HL_FOOT", "HR_FOOT"),
-        Path("solo_description/srdf/solo.srdf"),
+    "solo12": (
+        "solo_description/robots/solo12.urdf",
+        "solo_description/srdf/solo.srdf",
+        "FL_FOOT FR_FOOT HL_FOOT HR_FOOT",
         Sole(radius=0.016),
     ),
-    "talos": RobotFiles(
-        Path("talos_data/robots/talos_reduced.urdf"),
-        ("left_sole_link", "right_sole_link"),
-        Path("talos_data/srdf/talos.srdf"),
+    "talos": (
+        "talos_data/robots/talos_reduced.urdf",
+        "talos_data/srdf/talos.srdf",
+        "left_sole_link right_sole_link",
         Sole(heel=-0.1, toe=0.1, width=0.12),
     ),
 }
+"""URDF, postures, feet and soles of the robots of example-robot-data."""
+
 NAMES: Final = tuple(_NAMED)
 """The robots that are known by name."""
 
@@ -92,7 +88,7 @@ def robot_named(name: str) -> RobotFiles:
     Raises:
         InputError: they are not installed.
     """
-    robot = _NAMED[name]
+    urdf, srdf, feet, sole = _NAMED[name]
     try:
         listed = {str(path): path.locate() for path in files("example-robot-data") or ()}
     except PackageNotFoundError:
@@ -101,10 +97,8 @@ def robot_named(name: str) -> RobotFiles:
             "give --urdf"
         ) from None
 
-    def located(path: Path) -> Path:
-        return next(Path(str(place)) for found, place in listed.items() if found.endswith(f"/{path.as_posix()}"))
-
-    return robot._replace(urdf=located(robot.urdf), srdf=None if robot.srdf is None else located(robot.srdf))
+    places = [next(Path(str(listed[one])) for one in listed if one.endswith(f"/{path}")) for path in (urdf, srdf)]
+    return RobotFiles(places[0], tuple(feet.split()), places[1], sole)
 
 
 def read_xml(path: Path) -> ET.Element:
@@ -114,10 +108,9 @@ def read_xml(path: Path) -> ET.Element:
         InputError: it is not there, or no XML.
     """
     try:
-        root = ET.parse(path).getroot()
+        return ET.parse(path).getroot()
     except (OSError, ET.ParseError) as error:
         raise InputError(f"{path} cannot be read as XML: {error}") from error
-    return root
 
 
 def simplify(root: ET.Element) -> None:
