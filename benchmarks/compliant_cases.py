@@ -7,13 +7,13 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
-from compliant_impact import compliant_impact
-from numpy.typing import NDArray
+from compliant_impact import compliant_impact, velocities
 
 from impact_predictor.mechanics.bodies import plate
 from impact_predictor.mechanics.impact import solve_impact
+from impact_predictor.mechanics.invariants import problem_at
 from impact_predictor.mechanics.random_problems import problems_of
-from impact_predictor.mechanics.types import Contact, Flag, Mode, Outcome, Twist, TwoPointBody
+from impact_predictor.mechanics.types import Flag, Mode, Outcome, Twist, TwoPointBody
 
 SEED = 5
 
@@ -45,20 +45,9 @@ class Case(NamedTuple):
     speed: float
 
 
-def velocities(body: TwoPointBody, twist: Twist) -> NDArray[np.float64]:
-    """c_nA, c_tA, c_nB, c_tB."""
-    found = []
-    for contact in (body.old, body.new):
-        assert contact is not None
-        (nx, ny), (ux, uy) = contact.normal, contact.velocity
-        cx, cy = twist.vx - twist.omega * contact.y - ux, twist.vy + twist.omega * contact.x - uy
-        found += [nx * cx + ny * cy, ny * cx - nx * cy]
-    return np.array(found)
-
-
 def difference(body: TwoPointBody, one: Twist, other: Twist, before: Twist) -> float:
     """The largest difference of a contact velocity, over the contact speeds before."""
-    change = np.abs(velocities(body, one) - velocities(body, other)).max()
+    change = np.abs(np.subtract(velocities(body, one), velocities(body, other))).max()
     return float(change / np.abs(velocities(body, before)).sum())
 
 
@@ -72,20 +61,9 @@ def moving(name: str) -> tuple[TwoPointBody, Twist]:
 def cases(kind: str, count: int) -> Iterator[Case]:
     """Random plastic impacts of one kind that both laws answer."""
     problems = problems_of(kind, np.random.default_rng(SEED), count)
-
-    def contact(one: Contact | None, i: int) -> Contact:
-        assert one is not None
-        x, y, friction, nx, ny, ux, uy = (
-            float(np.broadcast_to(np.asarray(value), count)[i])
-            for value in (one.x, one.y, one.friction, *one.normal, *one.velocity)
-        )
-        return Contact(x, y, friction, (nx, ny), 0.0, (ux, uy))
-
-    mass, inertia, old, new = problems.body
-    masses, inertias, twists = np.asarray(mass), np.asarray(inertia), np.array(problems.twist)
     for i in range(count):
-        body = TwoPointBody(float(masses[i]), float(inertias[i]), contact(old, i), contact(new, i))
-        twist = Twist(*twists[:, i].tolist())
+        body, twist = problem_at(problems.body, i), problem_at(problems.twist, i)
+        body = body._replace(old=body.old._replace(restitution=0.0), new=body.new._replace(restitution=0.0))
         path, total = solve_impact(body, twist), solve_impact(body, twist, "total")
         if path.mode is not Mode.NO_IMPACT and not (path.flags | total.flags) & UNANSWERED:
             yield Case(kind, body, twist, path, total, float(np.abs(velocities(body, twist)).sum()))
@@ -104,7 +82,7 @@ def disputed(count: int) -> list[Case]:
 def place(case: Case, ratio: float) -> tuple[float, float, float]:
     """Where the limit lies between the total law (0) and the path law (1); its distances from them, over theirs."""
     outcome = compliant_impact(case.body, case.twist, math.inf, ratio=ratio, damping=FIRM)
-    path, total, found = (velocities(case.body, one.twist) for one in (case.path, case.total, outcome))
+    path, total, found = (np.array(velocities(case.body, one.twist)) for one in (case.path, case.total, outcome))
     apart = path - total
     size = float(np.linalg.norm(apart))
     return (

@@ -25,7 +25,7 @@ from compliant_motion import Compliance, damping_ratio, force
 from numpy.typing import NDArray
 from scipy import integrate
 
-from impact_predictor.mechanics.impact import see
+from impact_predictor.mechanics.impact import approach, see
 from impact_predictor.mechanics.impact.answer import mode_of
 from impact_predictor.mechanics.types import Contact, Mode, Twist, TwoPointBody, Vector
 
@@ -145,14 +145,6 @@ class CompliantOutcome(NamedTuple):
     over: bool
 
 
-class _Units(NamedTuple):
-    """The units of the equations: speed in m/s, time in s (0 in the limit), and the radius of gyration in m."""
-
-    speed: float
-    time: float
-    rho: float
-
-
 def compliant_impact(
     body: TwoPointBody,
     twist: Twist,
@@ -180,15 +172,24 @@ def compliant_impact(
     contacts = (new,) if old is None else (old, new)
     if damping is None:
         damping = damping_ratio(old.restitution if old else 0.0), damping_ratio(new.restitution)
-    before = _velocities(body, twist)
+    before = velocities(body, twist)
     speed = sum(abs(one) for one in before if one != inf)
-    units = _Units(speed, sqrt(body.mass / stiffness), sqrt(body.inertia / body.mass))
-    parts = tuple(zip(contacts, (ratio, 1.0)[-len(contacts) :], damping[-len(contacts) :], strict=True))
-    points = tuple(_point(contact, twist, units, regularisation, *part) for contact, *part in parts)
-    weight = gravity[0] * units.time / speed, gravity[1] * units.time / speed
+    # The units of the equations are V, this time (0 in the limit) and the radius of gyration.
+    unit, rho = sqrt(body.mass / stiffness), sqrt(body.inertia / body.mass)
+
+    def point(contact: Contact, hardness: float, damping: float) -> ContactPoint:
+        """A contact in these units; `hardness` is its stiffness over that of the new contact."""
+        _, _, _, _, nx, ny, moment, _ = see(contact, twist)
+        mobility = 1.0 + (moment / rho) * (moment / rho)
+        compliance = Compliance(hardness, 2.0 * damping * sqrt(hardness / mobility), contact.friction, regularisation)
+        ux, uy = contact.velocity
+        return ContactPoint((contact.x / rho, contact.y / rho), (nx, ny), (ux / speed, uy / speed), compliance)
+
+    points = tuple(map(point, contacts, (ratio, 1.0)[-len(contacts) :], damping[-len(contacts) :]))
+    weight = gravity[0] * unit / speed, gravity[1] * unit / speed
     start = np.zeros(6 + 2 * len(points))
-    start[3:6] = twist.vx / speed, twist.vy / speed, twist.omega * units.rho / speed
-    equations = Equations(points, speed * units.time / units.rho, weight)
+    start[3:6] = twist.vx / speed, twist.vy / speed, twist.omega * rho / speed
+    equations = Equations(points, speed * unit / rho, weight)
     if old is not None and weight != (0.0, 0.0) and start_loaded:
         equations = loaded(equations, start)
 
@@ -219,37 +220,23 @@ def compliant_impact(
                 before_end, time = (middle, time) if remaining(middle, way(middle)) > 0.0 else (before_end, middle)
             state = way(time)
     x, y, q = (speed * float(value) for value in state[3:6])
-    after = Twist(x, y, q / units.rho)
-    velocities = _velocities(body, after)
+    after = Twist(x, y, q / rho)
+    left = velocities(body, after)
     impulses = [body.mass * speed * float(value) for value in state[6:]]
     na, ta, nb, tb = impulses if old is not None else (0.0, 0.0, *impulses)
-    pairs = zip((na, ta, nb, tb), before, velocities, strict=True)
+    pairs = zip((na, ta, nb, tb), before, left, strict=True)
     return CompliantOutcome(
-        mode=Mode(mode_of(STAYS * speed, *velocities)),
+        mode=Mode(mode_of(STAYS * speed, *left)),
         twist=after,
-        velocities=velocities,
+        velocities=left,
         impulses=((na, ta), (nb, tb)),
         energy_lost=-0.5 * sum(impulse * (one + other) for impulse, one, other in pairs if impulse != 0.0),
-        duration=float(time) * units.time,
+        duration=float(time) * unit,
         evaluations=int(solver.nfev),
         over=over,
     )
 
 
-def _point(
-    contact: Contact, twist: Twist, units: _Units, regularisation: float, hardness: float, ratio: float
-) -> ContactPoint:
-    """A contact in the units of the equations; `hardness` is its stiffness over that of the new contact."""
-    _, _, _, _, nx, ny, moment, _ = see(contact, twist)
-    speed, _, rho = units
-    mobility = 1.0 + (moment / rho) * (moment / rho)
-    compliance = Compliance(hardness, 2.0 * ratio * sqrt(hardness / mobility), contact.friction, regularisation)
-    ux, uy = contact.velocity
-    return ContactPoint((contact.x / rho, contact.y / rho), (nx, ny), (ux / speed, uy / speed), compliance)
-
-
-def _velocities(body: TwoPointBody, twist: Twist) -> tuple[float, float, float, float]:
-    """c_nA, c_tA, c_nB, c_tB."""
-    _, cna, cta, *_ = see(body.old, twist) if body.old is not None else (True, inf, 0.0)
-    _, cnb, ctb, *_ = see(body.new, twist)
-    return cna, cta, cnb, ctb
+def velocities(body: TwoPointBody, twist: Twist) -> tuple[float, float, float, float]:
+    """c_nA, c_tA, c_nB, c_tB; c_nA is inf without an old contact."""
+    return *((inf, 0.0) if body.old is None else approach(body.old, twist)), *approach(body.new, twist)
