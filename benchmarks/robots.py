@@ -27,8 +27,7 @@ from impact_predictor.bags.read import Bag
 from impact_predictor.cli import main as command
 from impact_predictor.report.table import plain_table, show
 from impact_predictor.ros.messages import DIAGNOSTIC_ARRAY
-from impact_predictor.scenarios.landing import LANDING_TOPIC, TrueLanding
-from impact_predictor.scenarios.truth import decode_truths
+from impact_predictor.scenarios.truth import LANDING_TOPIC, TrueLanding, decode_truths
 
 NOISE: Final = "--noise-position 0.001 --noise-velocity 0.02"
 RUNS: Final = (

@@ -34,9 +34,8 @@ from rich.console import Console
 
 from impact_predictor.bags.read import Bag
 from impact_predictor.errors import InputError
-from impact_predictor.parameters.file import read_values
 from impact_predictor.prediction.planar import hardly
-from impact_predictor.prediction.scene import Robot, Scene, scenes_of, triple
+from impact_predictor.prediction.scene import Robot, Scene, read_scenes, triple
 from impact_predictor.prediction.types import Geometry, Joints, Sample, Touchdown
 from impact_predictor.prediction.vectors import add, axes_of, cross, to_world
 from impact_predictor.prediction.walking.articulated import ArticulatedMachine
@@ -45,8 +44,7 @@ from impact_predictor.prediction.walking.impact import LandingPoint, touchdown_o
 from impact_predictor.report.table import Column, say, show, table_of
 from impact_predictor.ros.messages import JOINT_STATE, ODOMETRY
 from impact_predictor.ros.messages.inputs import decode_joints, decode_odometry
-from impact_predictor.scenarios.landing import LANDING_TOPIC, TrueLanding
-from impact_predictor.scenarios.truth import decode_truths
+from impact_predictor.scenarios.truth import LANDING_TOPIC, TrueLanding, decode_truths
 
 SLIPS: Final = 0.05
 RISES: Final = 0.01
@@ -229,7 +227,7 @@ def main(arguments: Sequence[str]) -> int:
         raise InputError("give a bag of simulate robot and its scene, or several such pairs")
     rows = []
     for bag, file in zip(arguments[::2], arguments[1::2], strict=True):
-        (scene,) = scenes_of(read_values(file)).values()
+        (scene,) = read_scenes(file).values()
         if scene.walking is None or scene.walking.robot is None:
             raise InputError(f"{file} has no robot.urdf: give a scene of `simulate robot --by-joints`")
         landings = cases(bag)

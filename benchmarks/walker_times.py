@@ -35,7 +35,6 @@ from rich.console import Console
 
 from impact_predictor.bags.adapters import Adapted, readers
 from impact_predictor.bags.read import Bag
-from impact_predictor.parameters.file import read_values
 from impact_predictor.prediction.predictor import Predictor
 from impact_predictor.prediction.scene import (
     CONTACT_GEOMETRY,
@@ -45,14 +44,13 @@ from impact_predictor.prediction.scene import (
     TERRAIN,
     Scene,
     Walking,
-    scenes_of,
+    read_scenes,
 )
 from impact_predictor.prediction.types import FeetStates, Geometry, Sample, Schedule, Score, Terrain, Vector3
 from impact_predictor.prediction.vectors import axes_of, to_world
 from impact_predictor.report.table import plain_table, show
 from impact_predictor.ros.messages import DIAGNOSTIC_ARRAY, INPUT_TYPES
-from impact_predictor.scenarios.landing import LANDING_TOPIC, TrueLanding
-from impact_predictor.scenarios.truth import decode_truths
+from impact_predictor.scenarios.truth import LANDING_TOPIC, TrueLanding, decode_truths
 
 ROOT: Final = Path(__file__).resolve().parents[1]
 PLAN: Final = ROOT / "examples/hyq/hyq.bag", "/xpp/state_des", "xpp_msgs/msg/RobotStateCartesian"
@@ -332,7 +330,7 @@ def plan() -> list[Adapted]:
 
 def scene() -> Scene:
     """The scene of HyQ, as it is shipped."""
-    return scenes_of(read_values(str(ROOT / "config/walker_hyq.yaml")))[""]
+    return read_scenes(ROOT / "config/walker_hyq.yaml")[""]
 
 
 def hyq() -> Walk:
@@ -396,7 +394,7 @@ def with_noise(walk: Walk, seed: int, *, on_robot: bool = True) -> Walk:
 
 def recorded(bag_path: str, scene_path: str) -> Walk:
     """A bag with its scene."""
-    machine = scenes_of(read_values(scene_path))[""]
+    machine = read_scenes(scene_path)[""]
     assert machine.walking is not None
     landings: dict[str, list[int]] = {foot: [] for foot in machine.walking.feet}
     messages: list[Message] = []

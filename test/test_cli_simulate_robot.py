@@ -11,8 +11,8 @@ from command_line import answer_of, invoke
 
 from impact_predictor.bags.read import topics
 from impact_predictor.commands import simulate_robot
-from impact_predictor.scenarios.landing import LANDING_TOPIC
 from impact_predictor.scenarios.robot import description, gait
+from impact_predictor.scenarios.truth import LANDING_TOPIC
 
 FOUR = "FL_foot,FR_foot,RL_foot,RR_foot"
 

@@ -14,8 +14,7 @@ from ..errors import InputError
 from ..prediction.scene import CONTACT_GEOMETRY, STATES, Scene, inputs_of
 from ..prediction.types import Status
 from ..ros.messages import DIAGNOSTIC_ARRAY, INPUT_TYPES
-from ..scenarios.landing import LANDING_TOPIC
-from ..scenarios.truth import ONSET_TOPIC, TRUTH_TOPIC
+from ..scenarios.truth import LANDING_TOPIC, ONSET_TOPIC, TRUTH_TOPIC
 from .inputs import adapted_topics, find_topics
 from .inputs import remapping as remapping
 from .read import Bag, BagMessage

@@ -15,8 +15,17 @@ from ..prediction.flaws import flaw_of
 from ..prediction.monitor import Monitor
 from ..prediction.recorded import Announced
 from ..prediction.scene import CONTACT_GEOMETRY, IMU, JOINTS, ODOM, SCHEDULE, TRANSFORMS, WRENCH, Input, Scene
-from ..prediction.types import FeetStates, Geometry, Imu, Joints, Sample, Schedule, Status, Transform, Wrench
+from ..prediction.types import FeetStates, Geometry, Imu, Joints, Sample, Schedule, Status, Wrench
 from ..ros.messages import DIAGNOSTIC_ARRAY, INPUT_TYPES, MARKER_ARRAY, MalformedMessage, encode_reports, is_typed
+from ..scenarios.truth import (
+    LANDING_TOPIC,
+    ONSET_TOPIC,
+    TRUTH_TOPIC,
+    TrueImpact,
+    TrueLanding,
+    TrueOnset,
+    decode_truths,
+)
 from .body import NODE as NODE
 from .body import BodyRecord, Write
 from .body import Settled as Settled
@@ -90,16 +99,12 @@ class Run:
         if knows_truth or knows_landings or (readers and walks):
             from ..scenarios.comparison import Comparison
 
-            self.comparison = Comparison(scenes, knows_impacts=knows_truth, knows_landings=knows_landings)
-        if knows_landings and self.comparison is not None:
-            from ..scenarios.landing import LANDING_TOPIC, TrueLanding
-
-            self._takers[LANDING_TOPIC] = partial(_take_truth, self.comparison.landings, TrueLanding)
-        if knows_truth and self.comparison is not None:
-            from ..scenarios.truth import ONSET_TOPIC, TRUTH_TOPIC, TrueImpact, TrueOnset
-
-            self._takers[TRUTH_TOPIC] = partial(_take_truth, self.comparison.impacts, TrueImpact)
-            self._takers[ONSET_TOPIC] = partial(_take_truth, self.comparison.onsets, TrueOnset)
+            known = self.comparison = Comparison(scenes, knows_impacts=knows_truth, knows_landings=knows_landings)
+            if knows_landings:
+                self._takers[LANDING_TOPIC] = partial(_take_truth, known.landings, TrueLanding)
+            if knows_truth:
+                self._takers[TRUTH_TOPIC] = partial(_take_truth, known.impacts, TrueImpact)
+                self._takers[ONSET_TOPIC] = partial(_take_truth, known.onsets, TrueOnset)
         if markers:
             from ..ros.markers.scene import MarkerScene
 
@@ -151,7 +156,7 @@ class Run:
     def _take_of(self, one: Input) -> Take:
         """What takes a message on an input."""
         if one.kind in TRANSFORMS:
-            return partial(self._set_frames, one.kind == TRANSFORMS[0])
+            return lambda transforms, _: self.monitor.update_frames(transforms, one.kind == TRANSFORMS[0])
         if one.body is None:
             return self._set_support
         if one.kind == IMU:
@@ -234,9 +239,6 @@ class Run:
                 self._draw(geometry.stamp, log_time)
         return status
 
-    def _set_frames(self, is_fixed: bool, transforms: tuple[Transform, ...], _: int) -> Status:
-        return self.monitor.update_frames(transforms, is_fixed)
-
     def _set_support(self, message: Sample | Imu, log_time: int) -> Status:
         monitor = self.monitor
         status = monitor.update_support_imu(message) if isinstance(message, Imu) else monitor.update_support(message)
@@ -281,8 +283,6 @@ class Run:
 
 
 def _take_truth(known: list[Any], kind: type, _: int, data: bytes) -> None:
-    from ..scenarios.truth import decode_truths
-
     # What tells no truth there is another program's.
     with suppress(MalformedMessage):
         known.extend(decode_truths(kind, data))

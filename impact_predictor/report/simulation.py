@@ -14,10 +14,9 @@ from rich.console import Console
 from ..mechanics.motion import End, RockingImpact
 from ..scenarios.as_json import rolling_as_json
 from ..scenarios.deck.voyage import Followed, Voyage
-from ..scenarios.landing import TrueLanding
 from ..scenarios.robot.walk import Walk
 from ..scenarios.rocking import Rocking
-from ..scenarios.truth import TrueOnset
+from ..scenarios.truth import TrueLanding, TrueOnset
 from ..scenarios.wheel import Rolling
 from ..stamps import NANOSECONDS
 from ..wording import NONE, counted, fixed, words

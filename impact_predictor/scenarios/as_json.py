@@ -10,12 +10,11 @@ from ..mechanics.motion import End, RockingImpact, Trajectory
 from ..mechanics.types import Mode
 from ..stamps import NANOSECONDS
 from .deck.voyage import Voyage
-from .truth import TrueImpact
+from .truth import TrueImpact, TrueLanding
 from .wheel import Rolling
 from .wheel_closed_forms import downhill, impact_friction, least_friction, steady
 
 if TYPE_CHECKING:
-    from .landing import TrueLanding
     from .robot.walk import Walk
 
 RESOLVED: Final = 0.05

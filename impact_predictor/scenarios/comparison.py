@@ -23,11 +23,10 @@ from ..prediction.types import Prediction, Vector3
 from ..prediction.vectors import add, axes_of, cross, to_world
 from ..ros.cdr import ERROR, STALE, WARN
 from ..stamps import NANOSECONDS
-from .landing import TrueLanding
 from .matching import LEAD_TIMES as LEAD_TIMES
 from .matching import NEAREST, Announcement, Match, Rows, match, truth_of
 from .matching import Truth as Truth
-from .truth import TrueImpact, TrueOnset
+from .truth import TrueImpact, TrueLanding, TrueOnset
 
 if TYPE_CHECKING:
     from ..prediction.watch.watch import Report

@@ -19,7 +19,6 @@ from ..prediction.types import Geometry
 from ..ros.cdr import diagnostic_array
 from ..ros.messages import DIAGNOSTIC_ARRAY, IMU, ODOMETRY, POLYGON, encode_imu, encode_odometry, encode_polygon
 from ..stamps import NANOSECONDS
-from .landing import LANDING_TOPIC, TrueLanding
 from .sensors import (
     AT_ONCE,
     FORWARD,
@@ -36,9 +35,11 @@ from .sensors import (
     stamps_of,
 )
 from .truth import (
+    LANDING_TOPIC,
     ONSET_TOPIC,
     TRUTH_TOPIC,
     TrueImpact,
+    TrueLanding,
     TrueOnset,
     encode_truth,
     true_impact,

@@ -1,4 +1,4 @@
-"""Impacts and onsets as a scenario knows them, and the messages in which a bag carries such events.
+"""Impacts, onsets and landings as a scenario knows them, and the messages in which a bag carries such events.
 
 They travel on topics of their own, as diagnostic_msgs/DiagnosticArray, and are never an input of a prediction.
 """
@@ -14,16 +14,17 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple, TypeVar, get_args, get
 from ..mechanics.impact import approach
 from ..mechanics.types import Mode, Outcome, TwoPointBody
 from ..prediction.types import Vector3
+from ..prediction.vectors import dot
 from ..ros.cdr import OK, MalformedMessage, decode_diagnostic_array, diagnostic_array, diagnostic_status, pairs_of
 from ..stamps import NANOSECONDS
 
 if TYPE_CHECKING:
     from ..mechanics.motion import RockingImpact
-    from .landing import TrueLanding
     from .sensors import MotionPlane
 
 TRUTH_TOPIC: Final = "/truth/impacts"
 ONSET_TOPIC: Final = "/truth/onsets"
+LANDING_TOPIC: Final = "/truth/landings"
 
 Happened = TypeVar("Happened")
 
@@ -73,6 +74,62 @@ class TrueOnset(NamedTuple):
     def said(self) -> str:
         """What the body begins to do, in words."""
         return " and ".join(word for word, holds in (("slides", self.slides), ("lifts", self.lifts)) if holds)
+
+
+class LandingState(NamedTuple):
+    """A machine `time` s after a foot has touched the ground, 0 for the last moment before.
+
+    `twist` of the trunk along its axes, linear of its origin in m/s and angular in rad/s; `rates` of the joints in
+    rad/s or m/s, in the order of joint_states; of each foot in the order of the scene its velocity in m/s and the
+    impulse in N s that the ground has given to it since, in the axes of the world.
+    """
+
+    time: float
+    twist: tuple[float, ...]
+    rates: tuple[float, ...]
+    velocities: tuple[Vector3, ...]
+    impulses: tuple[Vector3, ...]
+
+
+class TrueLanding(NamedTuple):
+    """A foot that came to the ground and stayed.
+
+    `stamp` in ns of the first contact; `body` its trunk's frame; `foot` its name; `feet` the names of all, and those of
+    them that were `standing`; `normal` of the ground under the foot; the `states` of the machine just before and after
+    it. The last one is that of the first peak of the normal force on the foot.
+    """
+
+    stamp: int
+    body: str
+    foot: str
+    feet: tuple[str, ...]
+    standing: tuple[str, ...]
+    normal: Vector3
+    states: tuple[LandingState, ...]
+
+    @property
+    def said(self) -> str:
+        """Its foot."""
+        return self.foot
+
+    @property
+    def before(self) -> LandingState:
+        """The machine just before it."""
+        return self.states[0]
+
+    @property
+    def after(self) -> tuple[LandingState, ...]:
+        """The machine after it."""
+        return self.states[1:]
+
+    @property
+    def speed(self) -> float:
+        """How fast the foot came down, in m/s."""
+        return -dot(self.before.velocities[self.feet.index(self.foot)], self.normal)
+
+    def impulse(self, state: LandingState) -> float:
+        """What the ground has given to the foot until a state, along the normal, in N s."""
+        return dot(state.impulses[self.feet.index(self.foot)], self.normal)
 
 
 def true_impact(

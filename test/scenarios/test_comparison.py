@@ -9,8 +9,7 @@ from impact_predictor.mechanics.types import Mode, Twist
 from impact_predictor.prediction.scene import Scene, Walking, Watching
 from impact_predictor.prediction.types import Foot, Leftover, Prediction, Sample, Status
 from impact_predictor.scenarios.comparison import Comparison, Truth
-from impact_predictor.scenarios.landing import LandingState, TrueLanding
-from impact_predictor.scenarios.truth import TrueImpact
+from impact_predictor.scenarios.truth import LandingState, TrueImpact, TrueLanding
 
 SCENE = Scene(1.0, ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), 0.5, contact_time=0.001)
 MS = 1_000_000

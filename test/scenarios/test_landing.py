@@ -8,8 +8,7 @@ import pytest
 
 from impact_predictor.prediction.types import Vector3
 from impact_predictor.ros.messages import MalformedMessage
-from impact_predictor.scenarios.landing import LandingState, TrueLanding
-from impact_predictor.scenarios.truth import TrueOnset, decode_truths, encode_truth
+from impact_predictor.scenarios.truth import LandingState, TrueLanding, TrueOnset, decode_truths, encode_truth
 
 FEET = ("LF", "RF", "LH", "RH")
 

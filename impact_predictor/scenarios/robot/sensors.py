@@ -21,9 +21,9 @@ from ...ros.messages import (
 )
 from ...ros.messages.walker_inputs import encode_feet, encode_joints, encode_schedule, encode_terrain, encode_wrench
 from ...stamps import NANOSECONDS
-from ..landing import LANDING_TOPIC, TrueLanding
 from ..record import FRAME, RecordedMessage, nothing_happened, truth_messages
 from ..sensors import rotations, stamps_of
+from ..truth import LANDING_TOPIC, TrueLanding
 from .description import Values
 from .walk import STANDS, RobotStates, Walk
 

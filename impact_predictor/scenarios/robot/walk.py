@@ -10,7 +10,7 @@ import numpy as np
 
 from ...prediction.types import Vector3
 from ...stamps import NANOSECONDS
-from ..landing import LandingState, TrueLanding
+from ..truth import LandingState, TrueLanding
 from .description import Values
 from .gait import PlannedGait, References, references
 from .ground import SimulatedGround

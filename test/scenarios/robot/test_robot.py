@@ -14,7 +14,6 @@ from impact_predictor.parameters.file import read_values
 from impact_predictor.prediction.scene import scenes_of
 from impact_predictor.prediction.vectors import add, axes_of, to_world
 from impact_predictor.ros.messages import INPUT_TYPES
-from impact_predictor.scenarios.landing import LANDING_TOPIC, TrueLanding
 from impact_predictor.scenarios.record import write_messages
 from impact_predictor.scenarios.robot.description import RobotFiles, Sole
 from impact_predictor.scenarios.robot.gait import PlannedGait
@@ -23,7 +22,7 @@ from impact_predictor.scenarios.robot.machine import STEP, Machine, Physics
 from impact_predictor.scenarios.robot.scene import write_scene
 from impact_predictor.scenarios.robot.sensors import WalkSensors, walk_messages
 from impact_predictor.scenarios.robot.walk import STANDS, SWING, Walk, landings_of, walk
-from impact_predictor.scenarios.truth import decode_truths
+from impact_predictor.scenarios.truth import LANDING_TOPIC, TrueLanding, decode_truths
 
 pytest.importorskip("mujoco", reason="needs the extra robot (make test-extras)")
 
