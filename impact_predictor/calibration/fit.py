@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from itertools import product
+from itertools import pairwise, product
 from math import inf
 from typing import Final, NamedTuple
 
@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InputError
-from .blocks import Blocks, blocks_of
+from ..stamps import NANOSECONDS
 from .impulses import AGAIN, Weights, least_lengths
 from .motions import Reals
 from .search import FOLDS, LEVEL, Estimate, resamples
@@ -54,6 +54,15 @@ RANGES: Final = {
 
 COARSE: Final = (0.0, 0.05, 0.1, 0.16, 0.24, 0.32, 0.44, 0.64, 1.0, 2.0, 100.0), (0.0, 0.1, 0.25, 0.5, 1.0)
 """Where the search begins: friction and restitution. The gaps grow where less depends on them."""
+
+Blocks = NDArray[np.int64]
+"""The block of each touchdown: (n,), counting from 0."""
+
+APART: Final = 1.0
+"""s: touchdowns further apart than this are of different motions, or of different times."""
+
+ENOUGH: Final = 10
+"""Blocks below which a record is cut at ever shorter pauses, down to single touchdowns."""
 
 ALIKE: Final = 1e-3
 """Mean errors that differ by less are alike: a thousandth of the speed is less than records or rigid theory hold."""
@@ -285,3 +294,22 @@ class CoefficientSearch:
     def _said(self) -> None:
         self._done += len(self.blocks)
         self._tell(self._done)
+
+
+def blocks_of(records: Sequence[Sequence[ScoredTouchdown]]) -> Blocks:
+    """The blocks of the touchdowns of some records, one record after the other.
+
+    A block is a stretch of one body's time in one record, between pauses of a second without touchdowns; where that
+    gives too few of them, between the longest pauses that there are.
+    """
+    pauses = [
+        np.inf if one.body != other.body else (other.stamp - one.stamp) / NANOSECONDS
+        for touchdowns in records
+        for one, other in pairwise((*touchdowns, *touchdowns[:1]))
+    ]
+    # The pause after the last touchdown of a record has no end.
+    ends = np.cumsum([len(touchdowns) for touchdowns in records if touchdowns]) - 1
+    breaks = np.array(pauses)
+    breaks[ends] = np.inf
+    longest = np.sort(breaks)[::-1][:ENOUGH]
+    return np.concatenate(([0], np.cumsum(breaks[:-1] >= min(APART, longest[-1]))))

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from boxes import touchdowns
 
-from impact_predictor.calibration.blocks import ENOUGH, blocks_of
+from impact_predictor.calibration.fit import ENOUGH, blocks_of
 from impact_predictor.calibration.touchdowns import ScoredTouchdown
 
 ONE = touchdowns(number=1)[0]
