@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import click
 
 from ..errors import InputError
-from ..mechanics.bodies import refuse
-from .options import F, json_flag, number, text, together
+from .options import F, json_flag, number, refuse_given, text, together, within
 from .progress import writing
 
 if TYPE_CHECKING:
@@ -40,7 +39,12 @@ def bag_option(truth: str) -> Callable[[F], F]:
 RATES_AS_MAGNITUDES: Final = "Print JSON, rates as magnitudes"
 record_options = together(
     bag_option("the true impacts"),
-    number("--rate", f"Samples of the bag for each second. [default: {RATE:g}]", show_default=False),
+    number(
+        "--rate",
+        "Samples of the bag for each second.",
+        RATE,
+        **within(lambda value: 0.0 < value <= 1e6, "a number above 0, up to 1e6"),
+    ),
 )
 as_json_option = json_flag(f"{RATES_AS_MAGNITUDES}.")
 
@@ -50,7 +54,7 @@ class Products(NamedTuple):
 
     as_json: bool
     output: str | None = None
-    rate: float | None = None
+    rate: float = RATE
     plot: str | None = None
 
     def check(self) -> None:
@@ -58,15 +62,10 @@ class Products(NamedTuple):
 
         Raises:
             click.UsageError: a rate is given, and no bag is.
-            InputError: the rate is out of its range, a picture is of no known format, or its folder does not exist.
+            InputError: a picture is of no known format, or its folder does not exist.
         """
-        if self.rate is not None and self.output is None:
-            raise click.UsageError("--rate is that of a bag: give -o BAG too")
-        refuse(
-            {"rate": RATE if self.rate is None else self.rate},
-            lambda value: 0.0 < value <= 1e6,
-            "a number above 0, up to 1e6",
-        )
+        if self.output is None:
+            refuse_given(["rate"], "is that of a bag: give -o BAG too")
         if self.plot is not None:
             from ..files import named
             from ..report.plot import PICTURE
@@ -78,9 +77,8 @@ class Products(NamedTuple):
         from ..scenarios.record import write_record
 
         assert self.output is not None
-        rate = RATE if self.rate is None else self.rate
         with writing(self.output, round(max(actor.duration for actor in actors))) as bar:
-            write_record(self.output, actors, rate, bar)
+            write_record(self.output, actors, self.rate, bar)
 
     def say(self, fields: Callable[[], object], show: Callable[[Console], None]) -> None:
         """Print what happened, and which files have been written."""
