@@ -100,16 +100,14 @@ class WholeBody:
                 self._arms[k] = place.rotation @ self._centers[k]
         self.jacobians = self._twists[:, :3].copy()
         if any(self.radii) or any(self._are_off):
-            self._roll(self._arms + self._balls * np.array(down))
+            # The contacts are the lowest points of balls, at the ends of these arms.
+            arms = self._arms + self._balls * np.array(down)
+            self.points += arms
+            self.jacobians += (arms @ CROSSED).reshape(-1, 3, 3) @ self._twists[:, 3:]
         self.inertia = pinocchio.crba(model, data, self._q).copy()
         # A leg whose mass is at its end moves without mass where it is stretched, and only there.
         pinocchio.cholesky.decompose(model, data)
         return bool((SINGULAR * self.inertia.diagonal() < data.D).all())
-
-    def _roll(self, arms: NDArray[np.float64]) -> None:
-        """Put the contacts to the ends of some arms (k, 3): the lowest points of balls."""
-        self.points += arms
-        self.jacobians += (arms @ CROSSED).reshape(-1, 3, 3) @ self._twists[:, 3:]
 
     @property
     def armature(self) -> NDArray[np.float64]:

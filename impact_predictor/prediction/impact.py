@@ -183,16 +183,11 @@ def leftover_of(scene: Scene, *, stands: bool, strays: bool, apart: bool, speed:
     Of it are told: whether anything stands, whether the motion or the contacts stray from the impact plane, whether the
     ends of the striking edge close apart from each other, and how fast it approaches (m/s).
     """
-    leftover = 0
-    if not stands:
-        leftover |= ONE_POINT
-    if strays:
-        leftover |= OUT_OF_PLANE
-    if apart:
-        leftover |= ONE_CORNER_FIRST
-    if speed < SLOWEST * hardly(scene):
-        leftover |= TOO_SLOW
-    return leftover_named(leftover)
+    bits = 0 if stands else ONE_POINT
+    bits |= OUT_OF_PLANE if strays else 0
+    bits |= ONE_CORNER_FIRST if apart else 0
+    bits |= TOO_SLOW if speed < SLOWEST * hardly(scene) else 0
+    return leftover_named(bits)
 
 
 @cache

@@ -68,7 +68,8 @@ def sentences(calibration: Calibration, scores: Sequence[Score]) -> list[str]:
     ]
     if reasons := unscored(scores):
         counts = ", ".join(f"{count:,} {words(reason)}" for reason, count in reasons.items())
-        said.append(f"{counted(_unscored(scores), 'more touchdown')} not scored: {counts}.")
+        number = sum(bool(_reasons(score)) for score in scores)
+        said.append(f"{counted(number, 'more touchdown')} not scored: {counts}.")
     if calibration.held_out.mean() > calibration.given.mean():
         said.append("Held out, the fitted values are not better than the given ones: these touchdowns add nothing.")
     for name, one in calibration.estimates.items():
@@ -92,10 +93,6 @@ def unscored(scores: Sequence[Score]) -> dict[str, int]:
 def _reasons(score: Score) -> Leftover:
     """Why a touchdown is not scored: by its whole twist, or else in its plane."""
     return score.leftover_6d if score.spatial is not None or not score.scored else Leftover.NONE
-
-
-def _unscored(scores: Sequence[Score]) -> int:
-    return sum(bool(_reasons(score)) for score in scores)
 
 
 def as_json(calibration: Calibration, bags: Sequence[str], scores: Sequence[Score]) -> dict[str, Any]:

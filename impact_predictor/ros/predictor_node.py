@@ -66,12 +66,10 @@ class PredictorNode(Node):
                 raise InputError("a parameter is given as [], which ROS reads as no value; leave it out") from error
             raise InputError(f"ROS refuses to make the node: {sentence(error)}") from error
 
-    def _tell_compiling(self) -> None:
-        self.get_logger().info("numba compiles the impact laws, once for a machine: half a minute")
-
     def _connect(self, scenes: dict[str, Scene], is_over: Callable[[], bool]) -> None:
         compiles = any(scene.samples or not scene.radius for scene in scenes.values())
-        with told_of_compiling(self._tell_compiling, is_over) if compiles else nullcontext():
+        tell = partial(self.get_logger().info, "numba compiles the impact laws, once for a machine: half a minute")
+        with told_of_compiling(tell, is_over) if compiles else nullcontext():
             self._monitor = Monitor(scenes)
         # Each subscription that tells what was lost costs the single-threaded executor as much as another topic.
         counts_losses = self.executor_kind == "events" or len(scenes) == 1

@@ -105,19 +105,15 @@ def fall(
     if struck < 0:
         return SpatialFall(inf, -1, state, (), (), tuple(standing))
     out = told.tolist()
+    px, py, pz, qx, qy, qz, qw, vx, vy, vz, wx, wy, wz = out[1:OUTPUT]
     return SpatialFall(
         time=out[0],
         point=struck,
-        state=state_of(out[1:OUTPUT]),
+        state=SpatialState((px, py, pz), (qx, qy, qz, qw), (vx, vy, vz), (wx, wy, wz)),
         gaps=tuple(out[OUTPUT::2]),
         rates=tuple(out[OUTPUT + 1 :: 2]),
         standing=tuple([i for i, mark in enumerate(marks[:n].tolist()) if mark != OPEN]),
     )
-
-
-def state_of(numbers: Sequence[float]) -> SpatialState:
-    px, py, pz, qx, qy, qz, qw, vx, vy, vz, wx, wy, wz = numbers
-    return SpatialState((px, py, pz), (qx, qy, qz, qw), (vx, vy, vz), (wx, wy, wz))
 
 
 USED = (reactions, stances, falling)

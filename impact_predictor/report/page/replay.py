@@ -128,18 +128,14 @@ def page_of_replay(
     what = facts.names[0] if len(answers) == 1 else f"{len(answers):,} records"
     samples = counted(sum(answer.get("samples", 0) for answer in answers), "sample")
     lead = f"{what}, {samples}, went through the predictor as if live."
-    return page(title_of(known), lead, known, [one for one in parts if one.parts or one.anchor == "unused"], script)
+    title = ", ".join(f"{one.question} {one.answer}" for one in known if "cost" not in one.question)
+    title = title or "No touchdown was predicted"
+    return page(title, lead, known, [one for one in parts if one.parts or one.anchor == "unused"], script)
 
 
 def told(facts: ReplayFacts) -> list[Headline]:
     """What is known of touchdowns, or of units under watch."""
     return [one for one in facts.headlines() if one.answer != "–"] if facts.rows or facts.true or facts.units else []
-
-
-def title_of(known: Sequence[Headline]) -> str:
-    """What a page says in one line."""
-    said = ", ".join(f"{one.question} {one.answer}" for one in known if "cost" not in one.question)
-    return said or "No touchdown was predicted"
 
 
 def bags(facts: ReplayFacts, each: Sequence[ReplayFacts], order: Sequence[int], links: Mapping[int, str]) -> Section:

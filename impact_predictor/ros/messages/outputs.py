@@ -166,18 +166,15 @@ def encode_reports(reports: Iterable[Report], nanoseconds: int, node: str = NODE
 
 
 def report_statuses(reports: Iterable[Report], deck: Report | None, node: str = NODE) -> list[StatusBytes]:
-    """The statuses of the units under watch, and of the deck that carries them."""
-    found = [unit_status(report, node) for report in reports]
-    if deck is not None:
-        pairs = pairs_of(deck.values)
-        found.append(diagnostic_status(deck.level, f"{node}/deck", deck.message, deck.body, pairs))
-    return found
-
-
-def unit_status(report: Report, node: str = NODE) -> StatusBytes:
-    """A unit under watch: its level, what was exceeded, its values; the hardware is the body."""
-    name = f"{node}/unit/{report.body}" if report.body else f"{node}/unit"
-    return diagnostic_status(report.level, name, report.message, report.body, pairs_of(report.values))
+    """The statuses of the units under watch, and of the deck that carries them: level, what was exceeded, and values;
+    the hardware is the body.
+    """
+    named = [(f"unit/{one.body}" if one.body else "unit", one) for one in reports]
+    named += [] if deck is None else [("deck", deck)]
+    return [
+        diagnostic_status(one.level, f"{node}/{name}", one.message, one.body, pairs_of(one.values))
+        for name, one in named
+    ]
 
 
 class Output(NamedTuple):
