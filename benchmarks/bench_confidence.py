@@ -22,10 +22,8 @@ from rich.console import Console
 from rich.table import Table
 
 from impact_predictor.bags.read import read_messages
-from impact_predictor.parameters.file import read_parameters
-from impact_predictor.parameters.validation import validate
 from impact_predictor.prediction.predictor import Predictor
-from impact_predictor.prediction.scene import Scene
+from impact_predictor.prediction.scene import read_scenes
 from impact_predictor.ros.messages import ODOMETRY, POLYGON, decode_odometry, decode_polygon, encode_prediction
 from impact_predictor.ros.messages.typed import encode_typed_prediction
 
@@ -39,7 +37,7 @@ COUNTS = (32, 64, 128)
 
 def samples_table() -> Table:
     """The samples that announce a touchdown, in scenes that ask for more and more."""
-    scene = Scene.from_parameters(validate(read_parameters(PARAMETERS)))
+    scene = read_scenes(PARAMETERS)[""]
     topics = {"/cube/odom": ODOMETRY, "/cube/contact_geometry": POLYGON}
     messages = list(islice(read_messages(TOSSES, topics), MESSAGES))
     covariance = tuple(np.diag([1e-4] * 3 + [1e-2] * 3).ravel().tolist())

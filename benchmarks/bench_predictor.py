@@ -12,30 +12,44 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Sequence
+from math import hypot
 from pathlib import Path
 from time import thread_time_ns
+from typing import Final, NamedTuple
 
 import numpy as np
-from deck_motions import Motions, motions
 from forms import in_both_forms
+from harmonic_deck import Wave, harmonic_support
 from numpy.typing import NDArray
 from rich.console import Console
 from rich.table import Table
 
+from impact_predictor import TwoPointBody, cylinder, plate
 from impact_predictor.bags.read import BagMessage, read_messages
-from impact_predictor.parameters.file import read_parameters
-from impact_predictor.parameters.validation import validate
+from impact_predictor.mechanics.motion import PlanarState, rock, standing
 from impact_predictor.prediction.deck.tracker import Deck
 from impact_predictor.prediction.predictor import Predictor
-from impact_predictor.prediction.scene import Scene
-from impact_predictor.prediction.types import Status
+from impact_predictor.prediction.scene import MovingDeck, Scene, read_scenes
+from impact_predictor.prediction.types import Sample, Status, Vector3
 from impact_predictor.ros.messages import ODOMETRY, POLYGON, decode_odometry, decode_polygon
+from impact_predictor.scenarios.sensors import ACROSS, Mount, Odometer, poses
 
 ROOT = Path(__file__).resolve().parents[1]
 TOSSES = ROOT / "examples/cube_tosses/cube_tosses.mcap"
 PARAMETERS = ROOT / "config/cube_tosses.yaml"
 
 KINDS = ("no touchdown ahead", "in flight", "standing")
+
+RATE: Final = 100.0
+"""Messages a second of deck and body."""
+SPAN: Final = 2.0
+"""Seconds of each motion."""
+BREAK: Final = 1.0
+"""Seconds until the next one, so that it is a record of its own."""
+
+CRATE: Final = plate(length=0.8, height=1.0, mass=50.0, friction=0.5)
+DRUM: Final = cylinder(radius=0.3, gamma=0.6, mass=40.0, friction=0.5)
+SWELL: Final = harmonic_support(angle=(Wave(0.1, 0.9, 0.4),), x=(Wave(0.8, 0.7, 1.0),), y=(Wave(1.0, 0.8, 0.2),))
 
 
 def run(scene: Scene, record: Sequence[BagMessage]) -> tuple[list[float], list[int]]:
@@ -66,6 +80,58 @@ def by_kind(title: str, costs: NDArray[np.float64], kinds: list[int]) -> Table:
         numbers = np.median(chosen), np.mean(chosen), np.percentile(chosen, 99)
         table.add_row(name, str(len(chosen)), *(f"{number:.1f}" for number in numbers))
     return table
+
+
+class Motions(NamedTuple):
+    """A body on a deck in a swell, with the messages of its deck and its own; those of one stamp belong together."""
+
+    name: str
+    scene: Scene
+    messages: list[tuple[Sample, Sample]]
+
+
+def motions() -> list[Motions]:
+    """A crate and a drum, each at rest and rocking."""
+    crate, drum = crate_scene(), drum_scene()
+    return [
+        Motions("crate at rest", crate, messages(CRATE, [0.0] * 3)),
+        Motions("crate that rocks", crate, messages(CRATE, [0.1, 0.2, 0.3, -0.15, -0.25])),
+        Motions("drum at rest", drum, messages(DRUM, [0.0] * 3)),
+        Motions("drum that rocks", drum, messages(DRUM, [0.1, 0.2, 0.3, -0.15, -0.25])),
+    ]
+
+
+def crate_scene() -> Scene:
+    points = tuple((x, y, -0.5) for x in (-0.3, 0.3) for y in (-0.4, 0.4))
+    return Scene(CRATE.mass, principal(CRATE.inertia), 0.5, points=points, deck=MovingDeck())
+
+
+def drum_scene() -> Scene:
+    old, new = DRUM.old, DRUM.new
+    assert old is not None
+    edges = (0.0, 0.0, 0.0), (0.0, new.x - old.x, new.y - old.y)
+    inertia = principal(DRUM.inertia)
+    return Scene(DRUM.mass, inertia, 0.5, deck=MovingDeck(), radius=hypot(old.x, old.y), edges=edges)
+
+
+def principal(about_x: float) -> tuple[Vector3, Vector3, Vector3]:
+    return (about_x, 0.0, 0.0), (0.0, 1.3 * about_x, 0.0), (0.0, 0.0, 0.8 * about_x)
+
+
+def messages(body: TwoPointBody, angles: list[float]) -> list[tuple[Sample, Sample]]:
+    """Motions that start at these angles (rad), one after the other, as messages of the deck and of the body."""
+    found, times = [], np.arange(0.0, SPAN, 1.0 / RATE)
+    moves = SWELL.motion(times)
+    frame = PlanarState(moves.x, moves.y, moves.angle, moves.vx, moves.vy, moves.rate)
+    for number, angle in enumerate(angles):
+        run = rock(body, standing(body, angle), SWELL, duration=SPAN)
+        stamps = [round(number * (SPAN + BREAK) * 1e9) + k * round(1e9 / RATE) for k in range(len(times))]
+        both = [
+            Odometer("world", name).samples(stamps, poses(state, ACROSS, Mount()))
+            for name, state in (("deck", frame), ("body", run.world(times)))
+        ]
+        found += zip(*both, strict=True)
+    return found
 
 
 def on_deck(moves: Motions) -> tuple[list[float], list[float], list[bool]]:
@@ -106,7 +172,7 @@ def deck_table(runs: int) -> Table:
 def main() -> int:
     """Print what a sample costs, by what the body does."""
     runs = int(sys.argv[1]) if len(sys.argv) > 1 else 3
-    scene = Scene.from_parameters(validate(read_parameters(PARAMETERS)))
+    scene = read_scenes(PARAMETERS)[""]
     record = list(read_messages(TOSSES, {"/cube/odom": ODOMETRY, "/cube/contact_geometry": POLYGON}))
     kinds = run(scene, record)[1]
     whole = fastest(scene, record, runs)

@@ -26,10 +26,8 @@ from rich.table import Table
 from impact_predictor.bags.read import read_messages
 from impact_predictor.bags.replay import NODE, replay
 from impact_predictor.bags.write import BagWriter
-from impact_predictor.parameters.file import read_parameters
-from impact_predictor.parameters.validation import validate
 from impact_predictor.prediction.predictor import Predictor
-from impact_predictor.prediction.scene import Scene
+from impact_predictor.prediction.scene import Scene, read_scenes
 from impact_predictor.resources import find
 from impact_predictor.ros.messages import ODOMETRY, OUTPUTS, POLYGON, decode_odometry, decode_polygon
 
@@ -103,7 +101,7 @@ def parts(bag: Path, scene: Scene, output: Path) -> dict[str, Callable[[], objec
 def main() -> int:
     """Print the tables; the exit status says whether the replay is fast enough."""
     bag = find("examples/cube_tosses")
-    scene = Scene.from_parameters(validate(read_parameters(find("config/cube_tosses.yaml"))))
+    scene = read_scenes(find("config/cube_tosses.yaml"))[""]
     columns = ("median", "slowest", "fastest", "expected", "median by the wall clock")
     wholes = Table("", *columns, title=f"Samples per second, {RUNS} runs each")
     shares = Table("part", "median", "slowest", "fastest", title="us per sample, each part alone")

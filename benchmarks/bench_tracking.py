@@ -32,6 +32,7 @@ from impact_predictor.prediction.types import Felt, Imu, Sample, Vector3
 from impact_predictor.ros.messages import IMU, ODOMETRY, decode_imu, decode_odometry
 from impact_predictor.scenarios.deck.sea import SeaState, waves_of
 from impact_predictor.scenarios.deck.vessel import Vessel, deck_in
+from impact_predictor.scenarios.sensors import Odometer
 
 Array = NDArray[np.float64]
 
@@ -45,8 +46,6 @@ NOISES = (0.0, 0.002, 0.02)
 """m/s of each velocity; angular velocities have half of it in rad/s."""
 SETTLING = 120.0
 """s until forecasts are judged: by then the sea is learnt."""
-
-ZEROS = (0.0,) * 36
 
 
 class Record(NamedTuple):
@@ -77,11 +76,7 @@ def simulated(name: str, vessel: Vessel, sea: SeaState, seconds: float) -> Recor
     times = np.arange(0.0, seconds, 0.05)
     deck = deck_in(waves_of(sea, seed=1), vessel)
     state = deck.at(times)
-    columns = [part.tolist() for part in state.poses]
-    samples = [
-        Sample(round(1e9 * time), "world", "deck", *map(tuple, pose), ZEROS, ZEROS)
-        for time, *pose in zip(times.tolist(), *columns, strict=True)
-    ]
+    samples = list(Odometer("world", "deck").samples([round(1e9 * time) for time in times.tolist()], state.poses))
     felt = np.hstack([state.gravity, state.poses.angular, state.turning])
     return Record(name, (0.0, 0.0, -deck.gravity), samples, felt)
 

@@ -19,9 +19,8 @@ from bench_tracking import SHIP, simulated
 from rich.console import Console
 from rich.table import Table
 
-from impact_predictor.parameters.file import read_values
 from impact_predictor.prediction.monitor import Monitor
-from impact_predictor.prediction.scene import Scene, scenes_of
+from impact_predictor.prediction.scene import Scene, read_scenes
 from impact_predictor.prediction.types import Sample, Vector3
 from impact_predictor.prediction.vectors import add, axes_of, composed, cross, to_world
 from impact_predictor.prediction.watch.levels import Level
@@ -98,7 +97,7 @@ def main(seconds: float) -> None:
     """Print the table."""
     table = Table("deck", "noise", "window", "tolerance", "ERROR/h", "WARN/h", "announced/h", "doubts")
 
-    scene = scenes_of(read_values(SCENE))[""]
+    scene = read_scenes(SCENE)[""]
     for name, vessel, sea in DECKS:
         samples = simulated(name, vessel, sea, seconds).samples
         for part, window, tolerance in CASES:

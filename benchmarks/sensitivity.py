@@ -19,11 +19,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from impact_predictor.bags.read import read_messages
-from impact_predictor.parameters.file import read_parameters
-from impact_predictor.parameters.validation import validate
 from impact_predictor.prediction.course import Pose
 from impact_predictor.prediction.predictor import Predictor
-from impact_predictor.prediction.scene import Scene, inertia_matrix
+from impact_predictor.prediction.scene import Scene, inertia_matrix, read_scenes
 from impact_predictor.prediction.score import SpatialScore
 from impact_predictor.prediction.types import Geometry, Sample, Touchdown
 from impact_predictor.prediction.vectors import add, axes_of, to_world
@@ -148,7 +146,7 @@ def variations(scene: Scene) -> Iterator[Variation]:
 def main() -> int:
     """Print both tables, each row as soon as it is known."""
     record = load()
-    scene = Scene.from_parameters(validate(read_parameters(PARAMETERS)))
+    scene = read_scenes(PARAMETERS)[""]
     shipped: list[Scored] = []
     show("choice", "value", "scored", "median", "90 %", "old lifts", "new lifts")
     for variation in variations(scene):

@@ -23,11 +23,12 @@ import numpy as np
 from rich.console import Console
 from rich.progress import track
 from rich.table import Table
-from spatial_problems import KINDS, ONE_FLOOR, ROUND, UNITS, Array, Problems, in_units, problems_of, turned
+from spatial_problems import KINDS, ONE_FLOOR, ROUND, Array, Problems, in_units, problems_of, turned
 
 from impact_predictor import ContactPoints, solve_spatial_impacts
 from impact_predictor.files import whole
 from impact_predictor.mechanics.impact.spatial import SpatialOutcomes
+from impact_predictor.mechanics.invariants import UNITS
 from impact_predictor.mechanics.types import ContactState, Flag
 
 ROUNDED, SETTLED = 1e-9, 1e-5

@@ -8,11 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from impact_predictor import Body, ContactPoints
+from impact_predictor.mechanics.invariants import UNITS
 
 Array = NDArray[np.float64]
-
-UNITS = 2.0**20, 2.0**-13, 2.0**7
-"""Units of mass, length and time: powers of two, which change no digit."""
 
 CHUNKS = (16, 16, 8, 8, 1, 1, 1, 1)
 """Chunks of each kind in a round, with 1 to 8 contacts: most scenes have one to four, and eight in all directions, or

@@ -17,8 +17,7 @@ from fuzz_parameters import check_sentence
 from impact_predictor.bags.read import read_messages, topics
 from impact_predictor.bags.replay import replay
 from impact_predictor.errors import InputError
-from impact_predictor.parameters.file import read_values
-from impact_predictor.prediction.scene import scenes_of
+from impact_predictor.prediction.scene import read_scenes
 from impact_predictor.report.answers import as_json
 
 MESSAGES: Final = 120
@@ -70,7 +69,7 @@ def _write(path: Path, types: dict[str, str], messages: list[Any]) -> dict[str, 
 
 @cache
 def _scene() -> Any:
-    return scenes_of(read_values(ROOT / "config/cube_tosses.yaml"))
+    return read_scenes(ROOT / "config/cube_tosses.yaml")
 
 
 @cache
