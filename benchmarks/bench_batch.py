@@ -14,7 +14,9 @@ import sys
 import tracemalloc
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import partial
 from time import perf_counter
+from typing import Any
 
 import numpy as np
 from rich.console import Console
@@ -34,24 +36,13 @@ PAPER = ("plate", "cylinder", "floor")
 def mixture(count: int, kinds: tuple[str, ...] = MIXTURE) -> tuple[TwoPointBody, Twist]:
     """Impacts of several kinds in random order."""
     source = np.random.default_rng(1)
-    parts = [problems_of(kind, source, count // len(kinds) + 1) for kind in kinds]
+    parts: Any = [problems_of(kind, source, count // len(kinds) + 1) for kind in kinds]
     order = source.permutation(count)
-
-    def mixed(fields: list[np.ndarray]) -> np.ndarray:
-        return np.concatenate(fields)[order]
-
-    mass, inertia, vx, vy, omega, *numbers = (
-        mixed(list(column))
-        for column in zip(
-            *(
-                (body.mass, body.inertia, *twist, *numbers_of(body.old), *numbers_of(body.new))
-                for _, body, twist in parts
-            ),
-            strict=True,
-        )
-    )
+    rows = [(body.mass, body.inertia, *twist, *numbers_of(body.old), *numbers_of(body.new)) for _, body, twist in parts]
+    fields: list[Any] = [np.concatenate(column)[order] for column in zip(*rows, strict=True)]
+    mass, inertia, vx, vy, omega, *numbers = fields
     old, new = (
-        parts[0].body.new._replace(
+        parts[0][1].new._replace(
             x=x, y=y, friction=friction, normal=(nx, ny), restitution=restitution, velocity=(ux, uy)
         )
         for x, y, friction, nx, ny, restitution, ux, uy in (numbers[:8], numbers[8:])
@@ -103,21 +94,21 @@ def main() -> None:
     fast = f"compiled with numba, {processors()} threads"
     print(fast if "numba" in sys.modules else "plain Python: install the extra `fast` for numba")
     count = COUNT if "numba" in sys.modules else COUNT // 100
-    cases = {kind: problems_of(kind, np.random.default_rng(1), count // 10)[1:] for kind in MIXTURE}
+    cases: dict[str, Any] = {kind: problems_of(kind, np.random.default_rng(1), count // 10)[1:] for kind in MIXTURE}
     cases[f"{', '.join(PAPER)}, shuffled, {count:,}"] = mixture(count, PAPER)
     cases[f"all of them, shuffled, {count:,}"] = mixture(count)
     columns = (column for law in LAWS for column in (f"{law}: ns", "one thread"))
     table = Table("kind", *columns, title="One impact of many, median")
-    for name, case in cases.items():
-        medians = (both_medians(lambda law=law, case=case: solve_impacts(*case, law)) for law in LAWS)
-        size = np.broadcast(case[0].mass, case[1].omega).size
+    for name, (body, twist) in cases.items():
+        medians = (both_medians(partial(solve_impacts, body, twist, law)) for law in LAWS)
+        size = np.broadcast(body.mass, twist.omega).size
         table.add_row(name, *(f"{1e9 * seconds / size:.0f}" for pair in medians for seconds in pair))
     Console().print(table)
     print(f"memory beyond inputs and outputs: {beyond_outputs(*mixture(count), 'path'):.2f} bytes per impact")
     heights, frictions = np.linspace(0.01, 2.0, 1000)[:, None], np.linspace(0.0, 1.5, 1000)
     body = plate(length=1.0, height=heights, mass=1.0, friction=frictions)
     for law in LAWS:
-        by_all, by_one = both_medians(lambda law=law: solve_impacts(body, body.turning(omega=-1.0), law))
+        by_all, by_one = both_medians(partial(solve_impacts, body, body.turning(omega=-1.0), law))
         print(f"map of 1000 x 1000, {law} law: {by_all:.3f} s, one thread {by_one:.3f} s")
 
 

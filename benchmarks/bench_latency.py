@@ -135,7 +135,7 @@ def predict(file: str) -> int:
         returned[prediction.sample.stamp] = time.monotonic_ns(), costs[1], time.process_time()
         answered(self, name, body, prediction, *costs)
 
-    Reporter.answered = note  # type: ignore[method-assign]
+    Reporter.answered = note  # type: ignore[assignment, method-assign]
     return run_node([sys.argv[0], *sys.argv[sys.argv.index("--ros-args") :]]) or _write(file, returned)
 
 

@@ -87,8 +87,8 @@ def figures(sent: Sent, heard: list[tuple[float, int]], reports: list[tuple[int,
     if sent.node == PREDICTOR:
         served = accepted(reports, sent.end + int(SETTLING * 1e9)) - accepted(reports, sent.begin)
     latency = median([end - begin for begin, end in answered]) * 1e-3 if answered else float("nan")
-    reached = sent.count / (sent.end - sent.begin) * 1e9
-    return Figures(sent.cpu / sent.count * 1e6, latency, sent.count - served, reached)
+    reached = sent.samples / (sent.end - sent.begin) * 1e9
+    return Figures(sent.cpu / sent.samples * 1e6, latency, sent.samples - served, reached)
 
 
 def accepted(reports: list[tuple[int, dict[str, str]]], when: int) -> int:

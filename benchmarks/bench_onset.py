@@ -107,7 +107,7 @@ def measure(count: int, drums: int, lashed: int) -> list[tuple[str, float, float
     rocks = [rests._replace(orientation=(sin(half), 0.0, 0.0, cos(half))) for half in (0.05, 0.06)]
     resting = timed(lambda turn: body.update_body("unit", rests._replace(stamp=turn), None))
     rocking = timed(lambda turn: body.update_body("unit", rocks[turn % 2]._replace(stamp=turn), None))
-    found += [("pose of a unit that rests", *resting), ("pose of a unit that rocks", *rocking)]
+    found += [("pose of a unit that rests", resting[0]), ("pose of a unit that rocks", rocking[0])]
     return [(name, *cost) for name, cost in found]
 
 

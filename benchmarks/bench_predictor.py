@@ -120,7 +120,7 @@ def principal(about_x: float) -> tuple[Vector3, Vector3, Vector3]:
 
 def messages(body: TwoPointBody, angles: list[float]) -> list[tuple[Sample, Sample]]:
     """Motions that start at these angles (rad), one after the other, as messages of the deck and of the body."""
-    found, times = [], np.arange(0.0, SPAN, 1.0 / RATE)
+    found, times = list[tuple[Sample, Sample]](), np.arange(0.0, SPAN, 1.0 / RATE)
     moves = SWELL.motion(times)
     frame = PlanarState(moves.x, moves.y, moves.angle, moves.vx, moves.vy, moves.rate)
     for number, angle in enumerate(angles):

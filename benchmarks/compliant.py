@@ -20,8 +20,8 @@ from typing import Any
 
 import click
 import numpy as np
-from compliant_cases import BODIES, FIRM, FIRMER, cases, difference, disputed, moving, place, velocities
-from compliant_impact import METHODS, STAYS, compliant_impact
+from compliant_cases import BODIES, FIRM, FIRMER, cases, difference, disputed, moving, place
+from compliant_impact import METHODS, STAYS, compliant_impact, velocities
 from compliant_motion import compliant_motion, damping_ratio
 from harmonic_deck import Wave, harmonic_support
 from rich.console import Console

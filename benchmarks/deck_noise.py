@@ -20,7 +20,7 @@ from rich.console import Console
 from rich.table import Table
 
 from impact_predictor.prediction.monitor import Monitor
-from impact_predictor.prediction.scene import Scene, read_scenes
+from impact_predictor.prediction.scene import Scene, read_scenes, triple
 from impact_predictor.prediction.types import Sample, Vector3
 from impact_predictor.prediction.vectors import add, axes_of, composed, cross, to_world
 from impact_predictor.prediction.watch.levels import Level
@@ -54,13 +54,13 @@ class Seen(NamedTuple):
 
 def noisy(sample: Sample, part: float, rng: np.random.Generator) -> Sample:
     """A sample of the deck with a part of the noise of its sensor."""
-    normal = (part * rng.normal(0.0, np.repeat(ORDINARY[:4], 3))).reshape(4, 3).tolist()
-    x, y, z = (0.5 * angle for angle in normal[1])
+    place, angles, linear, angular = (part * rng.normal(0.0, np.repeat(ORDINARY[:4], 3))).reshape(4, 3).tolist()
+    x, y, z = (0.5 * angle for angle in angles)
     return sample._replace(
-        position=add(sample.position, tuple(normal[0])),
+        position=add(sample.position, triple(place)),
         orientation=composed(sample.orientation, (x, y, z, (1.0 - x * x - y * y - z * z) ** 0.5)),
-        linear=add(sample.linear, tuple(normal[2])),
-        angular=add(sample.angular, tuple(normal[3])),
+        linear=add(sample.linear, triple(linear)),
+        angular=add(sample.angular, triple(angular)),
     )
 
 

@@ -276,16 +276,16 @@ class Odds(NamedTuple):
     """Of so many probabilities that were told: their mean, and the part of them that an event followed."""
 
     rule: str
-    count: int
+    times: int
     told: float
     happened: float
 
 
 ODDS: Final = [
-    Column[Odds]("rule", lambda one: one.rule, left=True),
-    Column[Odds]("times", lambda one: f"{one.count}"),
-    Column[Odds]("told", lambda one: f"{one.told:.2f}"),
-    Column[Odds]("happened", lambda one: f"{one.happened:.2f}"),
+    Column("rule", lambda one: one.rule, left=True),
+    Column("times", lambda one: f"{one.times}"),
+    Column("told", lambda one: f"{one.told:.2f}"),
+    Column("happened", lambda one: f"{one.happened:.2f}"),
 ]
 
 

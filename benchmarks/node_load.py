@@ -54,7 +54,7 @@ class Sent(NamedTuple):
 
     node: str
     rate: float
-    count: int
+    samples: int
     begin: int
     end: int
     cpu: float

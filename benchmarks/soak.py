@@ -311,7 +311,8 @@ def in_words(points: list[tuple[float, float]]) -> str:
 def slope(points: list[tuple[float, float]]) -> float:
     """That of the straight line nearest to some points."""
     x, y = (sum(values) / len(points) for values in zip(*points, strict=True))
-    return sum((a - x) * (b - y) for a, b in points) / (sum((a - x) ** 2 for a, _ in points) or 1.0)
+    spread = sum([(a - x) ** 2 for a, _ in points], 0.0)
+    return sum([(a - x) * (b - y) for a, b in points], 0.0) / (spread or 1.0)
 
 
 def last_word(child: Child) -> str:

@@ -49,7 +49,7 @@ def along(body: Body, contacts: ContactPoints, twist: NDArray[np.float64], steps
     work = spatial_path.sweep
 
     def recorded(*given: Any) -> int:
-        done = work(*given)
+        done: int = work(*given)
         system, before, motion, impulse = given[1], given[3], given[-2], given[-1]
         velocity = [0.0] * len(before)
         spatial_path.velocities(system, motion, velocity)

@@ -140,7 +140,7 @@ def judge(scene: Scene, machine: ArticulatedMachine, case: Case, alone: bool = F
     others = {} if alone else case.others
     loaded = [i for name in landing.standing if not alone for i in feet[landing.feet.index(name)]]
     stood = tuple([i for i in loaded if rises[i] <= RISES and i // each not in others])
-    lands = {}
+    lands: dict[int, LandingPoint] = {}
     for number, delay in {foot: 0.0, **others}.items():
         gaps = {i: float(heights[i] - heights[feet[number]].min()) for i in feet[number]}
         later = {i: delay + gap / max(-rises[i], SLOW) for i, gap in gaps.items()}
@@ -187,6 +187,7 @@ def models(scene: Scene, robot: Robot) -> dict[str, tuple[ArticulatedMachine, bo
     free = robot._replace(armature=(), drives="free", kp=(), kd=())
     rotors = free._replace(joints=robot.joints, armature=robot.armature)
     made = {"one rigid body": free._replace(drives="held"), "free joints": free, "armature": rotors, "scene": robot}
+    assert scene.walking is not None
     radii = scene.walking.radius * (len(robot.frames) // max(len(scene.walking.radius), 1))
     machines = {name: (ArticulatedMachine(one, radii), False) for name, one in made.items()}
     return machines | {"foot's own mass": (machines["free joints"][0], True)}

@@ -157,8 +157,8 @@ def replayed(walk: Walk) -> Replayed:
         if not isinstance(message, Sample):
             walker.tell(message)
             if isinstance(message, Schedule):
-                for foot, landings in landings_of(message).items():
-                    planned[foot] = [stamp for stamp in planned[foot] if stamp < message.times[0]] + landings
+                for name, landings in landings_of(message).items():
+                    planned[name] = [stamp for stamp in planned[name] if stamp < message.times[0]] + landings
             elif isinstance(message, Geometry | FeetStates):
                 points = points_of(message, machine.walking)
             continue
