@@ -229,7 +229,7 @@ def test_what_does_not_fit_together_is_refused_in_one_sentence(given: dict[str, 
     [
         *({**BLIND, "place.position": STANDS, "source": source} for source in ("imu", "none")),
         {"source": "imu", "support.motion": "odom", "body.contact_points": BOX, "place.position": STANDS},
-        {**BLIND, "support.extent": EXTENT, "place.position": [5.0, -2.0, 0.8]},
+        *({**BLIND, "support.extent": EXTENT, "place.position": [x, y, 0.8]} for x, y in ((5.0, -2.0), (-5.0, 2.0))),
         {"support.extent": EXTENT, "place.position": [0.0, 2.1, 0.8]},
         # A hundredth of its size, the diagonal of 1 m x 1 m, is 0.0141 m.
         *({**BLIND, "support.height": 0.3, "place.position": [0.0, 0.0, z]} for z in (1.1, 1.114, 1.086)),

@@ -145,9 +145,10 @@ def test_one_spread_among_empty_ones_stays_exact() -> None:
     assert together([]) == Distribution()
 
 
-def test_spreads_together_are_those_of_all_numbers() -> None:
+@pytest.mark.parametrize("ends", [[10], [10, 700]], ids=["two", "three"])
+def test_spreads_together_are_those_of_all_numbers(ends: list[int]) -> None:
     numbers = np.random.default_rng(5).lognormal(size=3000)
-    parts = [spread_of([float(number) for number in part]) for part in np.split(numbers, [10, 700])]
+    parts = [spread_of([float(number) for number in part]) for part in np.split(numbers, ends)]
     spread = together(parts)
     assert (spread.number, spread.most) == (3000, max(numbers))
     for part, value in ((0.5, spread.p50), (0.9, spread.p90), (0.99, spread.p99)):

@@ -184,6 +184,15 @@ def test_a_single_outlier_is_neither_rocking_nor_a_slide() -> None:
         assert len(standing.stance.edges) == 4
 
 
+@pytest.mark.parametrize(("speed", "slides"), [(0.01, True), (0.0005, False)])
+def test_a_body_that_creeps_slides_and_one_whose_pose_drifts_does_not(speed: float, slides: bool) -> None:
+    standing, slid = Standing(CRATE), ""
+    for time in np.arange(100.0, 120.0, 0.05).tolist():
+        standing.update(sample((2.0 + speed * (time - 100.0), 1.0, 0.5), time=time))
+        slid = slid or standing.slid
+    assert bool(slid) == slides
+
+
 @pytest.mark.parametrize("seed", range(5))
 def test_noise_of_a_pose_within_the_contact_tolerance_raises_nothing(seed: int) -> None:
     rng = np.random.default_rng(seed)
