@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from math import cos, hypot, inf, radians, sin
 
 import pytest
 
 from impact_predictor.errors import InputError
 from impact_predictor.mechanics.annex13 import (
+    POSITIONS,
+    RATIOS,
+    STIFF,
     Balance,
     Device,
     LashedUnit,
@@ -53,6 +57,14 @@ def test_calculated_example_1_of_the_code_has_its_forces_and_balances() -> None:
     assert kilo(found["sliding to starboard"].holds) == [422]
     assert kilo(found["tipping to port"].acts, 2.0 * 62e3 * 9.81) == [691, 1216]
     assert found["tipping to port"].holds >= 1216e3  # no tipping, even without lashings
+
+
+@pytest.mark.parametrize("position", POSITIONS)
+def test_the_stiffer_a_vessel_and_the_higher_its_deck_the_more_it_accelerates_across(position: float) -> None:
+    vessels = [VesselData(100.0, 20.0, 20.0 / ratio, 15.0) for ratio in RATIOS]
+    across = [[design_accelerations(vessel, position, deck)[1] for deck in STIFF] for vessel in vessels]
+    assert all(stiffer > softer for one, other in pairwise(across) for stiffer, softer in zip(one, other, strict=True))
+    assert all(higher > lower for decks in across for higher, lower in pairwise(decks))
 
 
 def test_calculated_example_2_of_the_code_has_its_forces_and_the_factors_of_its_first_lashing() -> None:

@@ -66,6 +66,7 @@ def test_a_body_turns_about_its_old_contact():
         (lambda: plate(1.0, 1.0, 1.0, None), "friction is None"),
         (lambda: plate(1.0, 1.0, -1.0, 0.3), "mass is -1.0"),
         (lambda: plate(1.0, 1.0, 1.0, -0.3), "friction is -0.3"),
+        (lambda: plate(1.0, 1.0, 1.0, math.inf), "friction is inf"),
         (lambda: plate(1.0, 1.0, 1.0, 0.3, restitution=1.1), "restitution is 1.1"),
         (lambda: plate(1.0, 1.0, 1.0, 0.3, inertia=math.nan), "inertia is nan"),
         (lambda: plate(1.0, 1.0, 1.0, 0.3, a=-0.5, b=0.5), "a + b > 0"),

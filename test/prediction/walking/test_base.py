@@ -36,7 +36,8 @@ def motion_of(samples: list[Sample]) -> BaseMotion:
 
 
 @pytest.mark.parametrize(
-    ("lead_time", "period", "count"), [(0.0, PERIOD, 41), (0.1, PERIOD, 41), (0.1, 20_000_000, 2 * FEWEST)]
+    ("lead_time", "period", "count"),
+    [(0.0, PERIOD, 41), (0.1, PERIOD, 41), (0.1, PERIOD, FEWEST), (0.1, 20_000_000, 2 * FEWEST)],
 )
 def test_a_base_goes_on_at_the_acceleration_that_its_twists_show(lead_time: float, period: int, count: int) -> None:
     samples = [sample(k * period) for k in range(count)]
