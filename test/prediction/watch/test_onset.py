@@ -242,6 +242,12 @@ def test_the_energy_to_topple_is_what_lifts_the_mass_centre_over_the_easiest_edg
         assert easiest == int(np.argmin(works))
 
 
+@pytest.mark.parametrize("felt", [(20.0, 0.0, -9.81), (0.0, 0.0, 1.0)], ids=["tips", "lifts"])
+def test_a_body_that_tips_or_lifts_needs_no_energy_to_topple(felt: Any) -> None:
+    (least,), _ = Onset([on_points(FIVE, (0.0, 0.0, 0.7), 30.0, np.eye(3), 0.5)]).barriers(motion(np.array(felt)))
+    assert least == 0.0
+
+
 def test_many_bodies_at_many_times_are_as_each_alone() -> None:
     rng = np.random.default_rng(5)
     stances = [planar(CRATE), on_edges(DRUM), planar(SMOOTH, 3.0)._replace(friction=0.0), on_edges(DRUM)]
