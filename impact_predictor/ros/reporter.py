@@ -13,8 +13,9 @@ from ..prediction.scene import CONTACT_GEOMETRY, IMU, TRANSFORMS, Input
 from ..prediction.types import Geometry, Prediction, Status
 from ..stamps import NANOSECONDS
 from .cdr import diagnostic_array
-from .diagnostics import Diagnostics, FeetReport, Refusal
+from .diagnostics import Diagnostics, Refusal
 from .endpoints import Outlet, publisher
+from .feet_report import FeetReport
 from .messages.outputs import DIAGNOSTIC_ARRAY, MARKER_ARRAY, encode_reports, report_statuses
 
 if TYPE_CHECKING:

@@ -22,7 +22,8 @@ from impact_predictor.prediction.types import (
     Touchdown,
 )
 from impact_predictor.ros.cdr import OK, WARN, Diagnostic
-from impact_predictor.ros.diagnostics import FeetReport, shown
+from impact_predictor.ros.diagnostics import shown
+from impact_predictor.ros.feet_report import FeetReport
 from impact_predictor.ros.messages import (
     DIAGNOSTIC_ARRAY,
     POINT_CLOUD,
