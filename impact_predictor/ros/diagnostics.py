@@ -2,38 +2,20 @@
 
 from __future__ import annotations
 
-import math
 from collections import Counter, deque
 from collections.abc import Callable, Iterable, Sequence
-from typing import Final, NamedTuple
+from typing import Final
 
 from ..native import form
-from ..prediction.checks import REMEDIES
 from ..prediction.score import median
 from ..prediction.types import Score, Status
 from ..stamps import NANOSECONDS
 from .cdr import ERROR, OK, WARN, StatusBytes, diagnostic_status, pairs_of
 from .feet_report import REMEMBERED, FeetReport
-
-STALE_AFTER: Final = 1.0
-"""Seconds without a sample after which the input counts as stale."""
-
-SILENT: Final = 5.0
-"""Seconds without a message on an input after which the log says so."""
+from .inputs import STALE_AFTER, Inputs, Refusal
 
 COMPARABLE: Final = 10.0
 """Stamps further than this many seconds from the clock were not taken from it, so that no latency follows from them."""
-
-
-class Refusal(NamedTuple):
-    """Why a message was refused: the relative name of its input, and its status."""
-
-    input: str
-    status: Status
-
-    def said(self, flaw: str = "") -> str:
-        """It as words, with the `flaw` of the message as far as it is known."""
-        return f"{self.input} {self.status.name}: {flaw or REMEDIES[self.status]}"
 
 
 def shown(figures: Iterable[tuple[str, str, object]]) -> dict[str, str]:
@@ -70,10 +52,8 @@ class Diagnostics:
         self.message = "no sample yet"
         self.lost: int | None = 0
         """Messages that the middleware says it has lost; None where it is not asked."""
-        self.misfits: list[str] = []
-        """Whom QoS keeps apart from this node now: topic, node and reason of each."""
-        self.publishers = dict.fromkeys(inputs, 0)
-        """How many publish on each input."""
+        self.inputs = Inputs(inputs, now)
+        """What comes on each input."""
         self.feet: dict[str, FeetReport] = {}
         """What is counted of the feet of bodies that walk."""
         self.doubts: Callable[[], tuple[str, ...]] = tuple
@@ -86,9 +66,6 @@ class Diagnostics:
         self._others = 0
         self.dropped = 0
         """Samples that were dropped because newer ones waited behind them."""
-        self._last: dict[str, float] = {}
-        self._first = now
-        self._silent: set[str] = set()
         self._last_stamps: dict[str, int] = {}
         self._touchdowns = 0
         self._whole = _Errors()
@@ -128,30 +105,15 @@ class Diagnostics:
 
     def _heard(self, now: float, name: str) -> bool:
         """Note an accepted message; whether it changed the level, which it does when it was waited for."""
-        was = self._last.get(name, -math.inf)
-        self._last[name] = now
-        waited_for = self.level == ERROR or (self.level == WARN and now - was > STALE_AFTER)
+        silence = self.inputs.accepted(now, name)
+        waited_for = self.level == ERROR or (self.level == WARN and silence > STALE_AFTER)
         return waited_for and self._judge(now)
-
-    def _heard_last(self) -> dict[str, float]:
-        """When the last message came on each input that is to keep coming: a plan need not, so its silence is none."""
-        return {name: self._last[name] for name in self.publishers if name in self._last}
-
-    def fallen_silent(self, now: float) -> list[str]:
-        """The inputs that have told nothing for a while, each once until it is heard again."""
-        silent = {name for name in self.publishers if now - self._last.get(name, self._first) > SILENT}
-        fallen = sorted(silent - self._silent)
-        self._silent = silent
-        return fallen
-
-    def has_heard(self, name: str) -> bool:
-        """Whether a message on an input was accepted."""
-        return name in self._last
 
     def refused(self, now: float, reason: Refusal, flaw: str = "") -> bool:
         """Count a refused message, with what more is known of its flaw."""
         self._refused[reason] += 1
         self._flaws[reason] = flaw
+        self.inputs.refused(now, reason, flaw)
         self._refused_now[reason] += 1
         return self.level == OK and self._judge(now)
 
@@ -198,18 +160,18 @@ class Diagnostics:
 
     def _values(self, now: float) -> dict[str, str]:
         rate, largest_gap, latency = self._second
-        since = now - max(last.values()) if (last := self._heard_last()) else None
         update, longest, total = [1e6 * cost for cost in self._costs] if self._costs else (None, None, None)
+        apart = [one.kind for one in self.inputs.misfits]
         figures: list[tuple[str, str, object]] = [
             ("runs", "", form()),
             ("samples.accepted", "d", self._accepted),
             ("samples.rate", ".1f", rate),
             ("samples.largest_gap", ".4f", largest_gap),
-            ("samples.publishers", "d", sum(self.publishers.values())),
+            ("samples.publishers", "d", sum(self.inputs.publishers.values())),
             ("samples.dropped", "d", self.dropped),
             ("samples.lost", "d", self.lost),
-            ("incompatible_qos", "d", len(self.misfits)),
-            ("samples.seconds_since_last", ".3f", since),
+            *[(f"incompatible_{kind.lower()}", "d", apart.count(kind)) for kind in ("QoS", "type")],
+            ("samples.seconds_since_last", ".3f", self.inputs.since_last(now)),
             ("samples.latency", ".6f", latency),
             *[(f"refused.{one.input}.{one.status.name}", "d", self._refused[one]) for one in sorted(self._refused)],
             ("cost_us.update.median", ".1f", update),
@@ -236,7 +198,7 @@ class Diagnostics:
         refused = self._refused_now if at_its_end else self._refused_before + self._refused_now
         if refused:
             count = refused.total()
-            reason, _ = refused.most_common(1)[0]
+            reason = max(refused, key=lambda one: (not one.is_consequence, refused[one]))
             said = reason.said(self._flaws[reason])
             only_refused = not self._updates and (at_its_end or self.level == ERROR)
             if only_refused and reason.status is not Status.NO_GEOMETRY:
@@ -246,24 +208,8 @@ class Diagnostics:
             cost = f"{median(self._totals) * 1e3:.2g} ms" if self._totals else "too long"
             why = f"they come faster than answers, of {cost} each"
             return WARN, f"{dropped} samples dropped in the last second: {why}"
-        if self.misfits:
-            return WARN, f"QoS does not match ({len(self.misfits)}): {self.misfits[0]}"
-        last = self._heard_last()
-        if len(last) < len(self.publishers):
-            return WARN, self._missing()
-        age = now - min(last.values(), default=now)
-        if age > STALE_AFTER:
-            where = "" if len(last) == 1 else f" on {min(last, key=last.__getitem__)}"
-            return WARN, f"no sample{where} for {age:.1f} s"
+        flaw, is_lost = self.inputs.flaw(now)
+        if flaw:
+            return ERROR if is_lost else WARN, flaw
         flaws = [*[feet.flaw for feet in self.feet.values() if feet.flaw], *self.doubts()]
         return (WARN, flaws[0]) if flaws else (OK, "predicting")
-
-    def _missing(self) -> str:
-        """Which inputs never had a message."""
-        names = [name for name in self.publishers if name not in self._last]
-        silent = [name for name in names if not self.publishers[name]] or names
-        where = "" if len(self.publishers) == 1 else f" on {silent[0]}"
-        more = "" if len(silent) == 1 else f" (and on {len(silent) - 1} more)"
-        if self.publishers[silent[0]]:
-            return f"no sample yet{where}{more}"
-        return f"no sample yet{where}{more}: nobody publishes " + ("there" if where else f"on {silent[0]}")

@@ -17,6 +17,7 @@ from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.qos_overriding_options import QoSOverridingOptions, QoSPolicyKind
 
+from .inputs import Misfit
 from .process import message_class
 
 QUEUE: Final = 1000
@@ -189,26 +190,36 @@ class Misfits:
     def __init__(self, node: Node, subscriptions: Iterable[Any], publishers: Iterable[Any]) -> None:
         self._node = node
         ours = [*((one, True) for one in subscriptions), *((one, False) for one in publishers)]
-        self._found: dict[str, list[str]] = {one.topic_name: [] for one, _ in ours}
+        self._found: dict[str, list[Misfit]] = {one.topic_name: [] for one, _ in ours}
         self._turns = cycle(ours)
         self._at_once = min(AT_ONCE, len(ours))
 
-    def look(self) -> list[str]:
-        """A text for each that is known, with topic, node and reason; looks at some of many topics in their turn."""
+    def look(self) -> list[Misfit]:
+        """Each that is known; looks at some of many topics in their turn."""
         for ours, is_subscription in islice(self._turns, self._at_once):
             self._found[ours.topic_name] = list(self._of(ours, is_subscription))
         return list(chain.from_iterable(self._found.values()))
 
-    def _of(self, ours: Any, is_subscription: bool) -> Iterator[str]:
-        topic, node = ours.topic_name, self._node
+    def _of(self, ours: Any, is_subscription: bool) -> Iterator[Misfit]:
+        topic, node, type_name = ours.topic_name, self._node, _type_name(ours.msg_type)
         find = node.get_publishers_info_by_topic if is_subscription else node.get_subscriptions_info_by_topic
         for theirs in find(topic):
+            if theirs.topic_type != type_name:
+                does, others = ("publishes", "wanted") if is_subscription else ("wants", "published")
+                said = f"{theirs.node_name} {does} {theirs.topic_type} on {topic}, where {type_name} is {others}"
+                yield Misfit("type", topic, said)
+                continue
             offered, requested = ours.qos_profile, theirs.qos_profile
             whose = f"this node's publisher on {topic} for"
             if is_subscription:
                 offered, requested, whose = requested, offered, f"the publisher on {topic} from"
             if reason := _reason(offered, requested):
-                yield f"{whose} {theirs.node_name} {reason}"
+                yield Misfit("QoS", topic, f"{whose} {theirs.node_name} {reason}")
+
+
+def _type_name(kind: type) -> str:
+    """The name of the ROS type of a message class."""
+    return f"{kind.__module__.partition('.')[0]}/msg/{kind.__name__}"
 
 
 def _reason(offered: QoSProfile, requested: QoSProfile) -> str:

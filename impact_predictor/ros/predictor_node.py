@@ -26,8 +26,7 @@ from ..mechanics.compiled import told_of_compiling
 from ..parameters.validation import Parameter, Value, check_change, foreign, is_of_every_node, parameter_of, validate
 from ..prediction.monitor import Monitor
 from ..prediction.scene import CONTACT_GEOMETRY, FEET_STATES, ODOM, TRANSFORMS, Scene, features_of, inputs_of, scenes_of
-from ..wording import counted, listed
-from .diagnostics import SILENT
+from ..wording import listed
 from .endpoints import Misfits
 from .messages import is_typed
 from .process import flaw_of_file, overrides_of, sentence
@@ -142,19 +141,16 @@ class PredictorNode(Node):
     def _on_second(self) -> None:
         for one in self._told:
             one.look_for_history()
-        diagnostics = self._reporter.diagnostics
-        counts = {name: self.count_publishers(one.topic_name) for name, one in self._inputs.items()}
+        inputs, topics = self._reporter.diagnostics.inputs, {name: one.topic_name for name, one in self._inputs.items()}
+        counts = {name: self.count_publishers(topic) for name, topic in topics.items()}
         for name in [name for name in counts if name.endswith(FEET_STATES)]:
             # One of both ways to tell of feet is enough.
             other = name.removesuffix(FEET_STATES) + CONTACT_GEOMETRY
-            is_told = counts[name] or (diagnostics.has_heard(name) and not counts[other])
+            is_told = counts[name] or (inputs.has_heard(name) and not counts[other])
             del counts[other if is_told else name]
-        diagnostics.publishers = counts
-        for name in diagnostics.fallen_silent(perf_counter()):
-            topic = self._inputs[name].topic_name
-            why = f"{counted(counts[name], 'publisher')} there" if counts[name] else "nobody publishes there"
-            self.get_logger().warning(f"nothing has come on {topic} for {SILENT:.0f} s: {why}")
-        diagnostics.misfits = self._misfits.look()
+        inputs.publishers, inputs.misfits = counts, self._misfits.look()
+        for said in inputs.fallen_silent(perf_counter(), topics):
+            self.get_logger().warning(said)
         self._reporter.second_over()
 
     def served(self) -> int:

@@ -13,9 +13,10 @@ from ..prediction.scene import CONTACT_GEOMETRY, IMU, TRANSFORMS, Input
 from ..prediction.types import Geometry, Prediction, Status
 from ..stamps import NANOSECONDS
 from .cdr import diagnostic_array
-from .diagnostics import Diagnostics, Refusal
+from .diagnostics import Diagnostics
 from .endpoints import Outlet, publisher
 from .feet_report import FeetReport
+from .inputs import Refusal
 from .messages.outputs import DIAGNOSTIC_ARRAY, MARKER_ARRAY, encode_reports, report_statuses
 
 if TYPE_CHECKING:
@@ -127,7 +128,9 @@ class Reporter:
         """The monitor has accepted another message."""
         self.markers.take(one, message)
         now, name = perf_counter(), one.name
-        if name in self.diagnostics.publishers and (name == self._support or not self._support or self._time is None):
+        if name in self.diagnostics.inputs.publishers and (
+            name == self._support or not self._support or self._time is None
+        ):
             self._time = message.stamp, now
         self._publish(self.diagnostics.taken(now, name))
 

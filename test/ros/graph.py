@@ -29,12 +29,13 @@ PAUSE = 0.02
 class Peer:
     """The rest of the ROS graph: what publishes to the node and hears it."""
 
-    def __init__(self, context):
+    def __init__(self, context, outputs=tuple(OUTPUTS)):
+        """Be a node that hears these outputs of the predictor, and its reports."""
         self.node = rclpy.create_node("peer", context=context)
         self.executor = SingleThreadedExecutor(context=context)
         self.executor.add_node(self.node)
-        self.heard = {name: [] for name in (*OUTPUTS, "diagnostics")}
-        for name in OUTPUTS:
+        self.heard = {name: [] for name in (*outputs, "diagnostics")}
+        for name in outputs:
             self.hear(f"/impact_predictor/{name}", OUTPUTS[name].type_name, self.heard[name])
         self.hear("/diagnostics", "diagnostic_msgs/msg/DiagnosticArray", self.heard["diagnostics"])
 
@@ -127,10 +128,10 @@ def served_and_replayed(values, bag, output):
 
 
 @contextmanager
-def peer_of_node():
+def peer_of_node(outputs=tuple(OUTPUTS)):
     context = rclpy.Context()
     context.init()
-    peer = Peer(context)
+    peer = Peer(context, outputs)
     yield peer
     peer.executor.shutdown()
     peer.node.destroy_node()

@@ -9,7 +9,8 @@ from impact_predictor.native import form
 from impact_predictor.prediction.checks import REMEDIES
 from impact_predictor.prediction.types import Leftover, Score, SpatialTwist, Status, Touchdown
 from impact_predictor.ros.cdr import ERROR, OK, WARN, decode_diagnostic_array, diagnostic_array
-from impact_predictor.ros.diagnostics import STALE_AFTER, Diagnostics, Refusal
+from impact_predictor.ros.diagnostics import Diagnostics
+from impact_predictor.ros.inputs import STALE_AFTER, Inputs, Misfit, Refusal
 
 SECOND = 1_000_000_000
 BAD = Refusal("odom", Status.NOT_FINITE)
@@ -44,7 +45,7 @@ def test_before_the_first_sample_it_warns_and_says_whether_anybody_publishes(dia
     diagnostics.second_over(1.0)
     assert report(diagnostics).level == WARN
     assert report(diagnostics).message == "no sample yet: nobody publishes on odom"
-    diagnostics.publishers["odom"] = 1
+    diagnostics.inputs.publishers["odom"] = 1
     diagnostics.second_over(2.0)
     assert report(diagnostics).message == "no sample yet"
 
@@ -109,7 +110,7 @@ def test_samples_that_wait_for_the_geometry_are_a_warning_however_long_it_takes(
 
 
 def test_an_endpoint_that_qos_keeps_away_is_a_warning_that_names_it(diagnostics):
-    diagnostics.misfits = ["/odom from driver: best effort"]
+    diagnostics.inputs.misfits = [Misfit("QoS", "/odom", "/odom from driver: best effort")]
     accept(diagnostics, 0.1)
     diagnostics.second_over(1.0)
     assert diagnostics.level == WARN
@@ -190,7 +191,7 @@ def test_touchdowns_scored_by_the_whole_twist_have_a_count_and_a_median_beside_t
 
 def test_of_several_inputs_the_one_that_is_missing_or_silent_is_named():
     diagnostics = Diagnostics("impact_predictor", 0.0, ["support/odom", "crate/odom"])
-    diagnostics.publishers["support/odom"] = 1
+    diagnostics.inputs.publishers["support/odom"] = 1
     diagnostics.taken(0.1, "support/odom")
     diagnostics.second_over(0.2)
     assert report(diagnostics).message == "no sample yet on crate/odom: nobody publishes there"
@@ -208,3 +209,125 @@ def test_gaps_are_those_of_one_input_and_the_same_reason_on_several_is_news_once
     assert report(diagnostics).values["samples.largest_gap"] == "0.3000"
     reasons = [Refusal(f"{body}/odom", Status.SUPPORT_STALE) for body in "ab"]
     assert [diagnostics.is_news(reason) for reason in reasons] == [True, False]
+
+
+def test_what_was_refused_stays_an_error_with_its_reason_when_nothing_comes_any_more():
+    diagnostics = Diagnostics("impact_predictor", 0.0, ["joint_states", "odom"])
+    for now in (0.2, 0.4):
+        diagnostics.taken(now, "joint_states")
+        diagnostics.refused(now, BAD)
+    for second in range(1, 10):
+        diagnostics.second_over(float(second))
+        assert diagnostics.level == ERROR
+        assert "odom NOT_FINITE: a field is NaN" in diagnostics.message
+    assert diagnostics.message.startswith("nothing but refused messages (2), the last 8.6 s ago; odom NOT_FINITE")
+    assert diagnostics.message.endswith("; no sample on joint_states for 8.6 s")
+
+
+def test_inputs_that_stop_are_all_named_and_are_an_error_once_nothing_was_predicted_for_long():
+    diagnostics = Diagnostics("impact_predictor", 0.0, ["joint_states", "odom"])
+    diagnostics.taken(0.1, "joint_states")
+    accept(diagnostics, 0.2)
+    levels = []
+    for second in range(1, 8):
+        diagnostics.second_over(float(second))
+        levels.append(diagnostics.level)
+    assert levels == [OK, *[WARN] * 4, ERROR, ERROR]
+    assert diagnostics.message == "no sample on joint_states and odom for 6.9 s"
+
+
+def test_an_input_that_stops_is_a_warning_as_long_as_predictions_go_on():
+    diagnostics = Diagnostics("impact_predictor", 0.0, ["contact_wrench", "odom"])
+    diagnostics.taken(0.1, "contact_wrench")
+    for second in range(1, 10):
+        accept(diagnostics, second - 0.1)
+        diagnostics.second_over(float(second))
+    assert (diagnostics.level, diagnostics.message) == (WARN, "no sample on contact_wrench for 8.9 s")
+
+
+@pytest.mark.parametrize(("publishers", "level"), [(0, WARN), (1, ERROR)])
+def test_what_never_came_is_an_error_where_somebody_publishes_and_a_warning_where_nobody_has_begun(publishers, level):
+    diagnostics = Diagnostics("impact_predictor", 0.0, ["joint_states", "odom"])
+    for name in diagnostics.inputs.publishers:
+        diagnostics.inputs.publishers[name] = publishers
+    for second in range(1, 10):
+        diagnostics.second_over(float(second))
+    nobody = "" if publishers else ": nobody publishes there"
+    assert (diagnostics.level, diagnostics.message) == (level, f"no sample yet on joint_states and odom{nobody}")
+
+
+@pytest.mark.parametrize(
+    ("status", "blamed"),
+    [
+        ((Status.NO_GEOMETRY, "odom"), (Status.WRONG_JOINTS, "joint_states")),
+        ((Status.NO_SUPPORT, "crate/odom"), (Status.GRAVITY_WRONG, "support/odom")),
+        ((Status.SUPPORT_JUMPED, "crate/odom"), (Status.SUPPORT_JUMPED, "support/odom")),
+    ],
+)
+def test_of_several_reasons_that_which_the_others_follow_from_is_told_however_often_they_come(status, blamed):
+    diagnostics = Diagnostics("impact_predictor", 0.0, [status[1], blamed[1]])
+    for one, name in (status, status, blamed):
+        diagnostics.refused(0.5, Refusal(name, one))
+    diagnostics.second_over(1.0)
+    assert diagnostics.message.startswith(f"nothing but refused messages (3); {blamed[1]} {blamed[0].name}: ")
+    assert diagnostics.level == ERROR
+
+
+def test_types_and_qos_that_do_not_match_are_named_and_counted(diagnostics):
+    said = "driver publishes sensor_msgs/msg/JointState on /odom, where nav_msgs/msg/Odometry is wanted"
+    diagnostics.inputs.misfits = [Misfit("type", "/odom", said), Misfit("QoS", "/mode", "is best effort")]
+    diagnostics.second_over(1.0)
+    assert diagnostics.message == f"type does not match (1): {said}; no sample yet: nobody publishes on odom"
+    assert [report(diagnostics).values[f"incompatible_{kind}"] for kind in ("qos", "type")] == ["1", "1"]
+
+
+TOPICS = {name: f"/dog/{name}" for name in ("joint_states", "odom")}
+
+
+def silences(inputs, topics, now=6.0):
+    """What is said once of inputs, and not again a second later."""
+    said = inputs.fallen_silent(now, topics)
+    assert inputs.fallen_silent(now + 1.0, topics) == []
+    return said
+
+
+def test_where_all_messages_are_refused_the_log_says_so_with_their_number_and_the_last_reason():
+    inputs = Inputs([*TOPICS], 0.0)
+    for _ in range(1000):
+        inputs.refused(2.0, Refusal("odom", Status.BAD_QUATERNION), "")
+    inputs.refused(3.0, Refusal("odom", Status.WRONG_FRAME), "frame_id is 'map', but 'odom' is wanted")
+    inputs.accepted(4.0, "joint_states")
+    (said,) = silences(inputs, TOPICS)
+    assert said == (
+        "nothing but refused messages has come on /dog/odom for 5 s (1,001): "
+        "WRONG_FRAME: frame_id is 'map', but 'odom' is wanted"
+    )
+
+
+def test_where_nothing_comes_the_log_says_once_for_all_such_inputs_whether_it_is_qos_a_type_or_nobody():
+    inputs = Inputs([*TOPICS], 0.0)
+    nobody = "nothing has come on /dog/joint_states and /dog/odom for 5 s: nobody publishes there"
+    assert silences(inputs, TOPICS) == [nobody]
+    inputs = Inputs([*TOPICS], 0.0)
+    inputs.publishers["odom"] = 1
+    inputs.misfits = [Misfit("type", "/dog/odom", "driver publishes strings")]
+    assert silences(inputs, TOPICS) == [
+        "nothing has come on /dog/joint_states for 5 s: nobody publishes there",
+        "nothing has come on /dog/odom for 5 s: driver publishes strings",
+    ]
+
+
+@pytest.mark.parametrize("is_accepted", [False, True], ids=["refused too", "trusted now and then"])
+def test_of_bodies_that_are_refused_for_the_sake_of_their_support_the_log_says_one_sentence(is_accepted):
+    names = ["support/odom", *[f"crate{k}/odom" for k in range(30)]]
+    inputs, topics = Inputs(names, 0.0), {name: f"/{name}" for name in names}
+    for name in names:
+        inputs.refused(3.0, Refusal(name, Status.SUPPORT_JUMPED), "")
+    if is_accepted:
+        inputs.accepted(3.0, "support/odom")
+    where = "/crate0/odom, /crate1/odom, /crate10/odom, /crate11/odom and 26 more for 5 s (30) because of /support/odom"
+    (said,) = silences(inputs, topics)
+    assert said.startswith(
+        f"nothing but refused messages has come on {where if is_accepted else '/support/odom for 5 s (1)'}: "
+        "SUPPORT_JUMPED: the support's pose or twist does not follow"
+    )

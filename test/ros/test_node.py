@@ -7,14 +7,14 @@ from pathlib import Path
 
 import pytest
 
-from impact_predictor.ros.cdr import OK
+from impact_predictor.ros.cdr import ERROR, OK
 from impact_predictor.ros.messages import OUTPUTS, decode_diagnostic_array
 
 pytest.importorskip("rclpy", reason="the node needs ROS 2: source it, or install the extra `ros`")
 
 import rclpy
 from geometry_msgs.msg import Point32, PolygonStamped
-from graph import PATIENCE, running_node
+from graph import PATIENCE, peer_of_node, running_node
 from nav_msgs.msg import Odometry
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
@@ -164,6 +164,19 @@ def test_publishers_and_subscribers_that_qos_keeps_apart_from_the_node_are_named
         assert "the publisher on /odom from peer is best effort, but" in named
         peer.node.create_subscription(UInt8, "/impact_predictor/mode", print, LATCHED)
         peer.until(lambda: peer.reported("incompatible_qos") == "2")
+
+
+@pytest.mark.slow
+def test_publishers_and_subscribers_of_another_type_are_named_in_diagnostics_and_in_the_log(peer):
+    with running(*FIXED_POINTS) as node:
+        peer.publisher(PolygonStamped, "odom", RELIABLE)
+        wanted = "peer publishes geometry_msgs/msg/PolygonStamped on /odom, where nav_msgs/msg/Odometry is wanted"
+        assert wanted in peer.until_reported(lambda report: report.values["incompatible_type"] == "1").message
+        peer.until(lambda: f"nothing has come on /odom for 5 s: {wanted}" in node.complained())
+        # The peer itself hears this topic, and one participant knows a topic by one type.
+        with peer_of_node(()) as viewer:
+            viewer.node.create_subscription(UInt8, "/impact_predictor/prediction", print, RELIABLE)
+            peer.until_reported(lambda report: report.values["incompatible_type"] == "2" and report.level == ERROR)
 
 
 @pytest.fixture
