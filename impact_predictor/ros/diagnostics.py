@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter, deque
 from collections.abc import Callable, Iterable, Sequence
-from typing import Final
 
 from ..native import form
 from ..prediction.score import median
@@ -13,9 +13,7 @@ from ..stamps import NANOSECONDS
 from .cdr import ERROR, OK, WARN, StatusBytes, diagnostic_status, pairs_of
 from .feet_report import REMEMBERED, FeetReport
 from .inputs import STALE_AFTER, Inputs, Refusal
-
-COMPARABLE: Final = 10.0
-"""Stamps further than this many seconds from the clock were not taken from it, so that no latency follows from them."""
+from .latency import Latency
 
 
 def shown(figures: Iterable[tuple[str, str, object]]) -> dict[str, str]:
@@ -46,14 +44,25 @@ class Diagnostics:
     judgement; `accepted`, `refused` and `second_over` say whether it has changed, so that a report is due at once.
     """
 
-    def __init__(self, name: str, now: float, inputs: Sequence[str] = ("odom",)) -> None:
-        """Count from `now` on what comes on the inputs, and report under the name of the node."""
+    def __init__(
+        self,
+        name: str,
+        now: float,
+        inputs: Sequence[str] = ("odom",),
+        horizon: Callable[[str], float] = lambda _: math.inf,
+    ) -> None:
+        """Count from `now` on what comes on the inputs, and report under the name of the node.
+
+        `horizon` tells how far (s) ahead of the samples on an input touchdowns are predicted.
+        """
         self.level = WARN
         self.message = "no sample yet"
         self.lost: int | None = 0
         """Messages that the middleware says it has lost; None where it is not asked."""
         self.inputs = Inputs(inputs, now)
         """What comes on each input."""
+        self.latency = Latency(horizon)
+        """How old the samples are."""
         self.feet: dict[str, FeetReport] = {}
         """What is counted of the feet of bodies that walk."""
         self.doubts: Callable[[], tuple[str, ...]] = tuple
@@ -70,7 +79,7 @@ class Diagnostics:
         self._touchdowns = 0
         self._whole = _Errors()
         self._in_plane = _Errors()
-        self._second: tuple[float, float, float | None] = 0.0, 0.0, None
+        self._second = 0.0, 0.0
         self._costs: list[float] | None = None
         self._refused_now: Counter[Refusal] = Counter()
         self._begin_second(now)
@@ -80,7 +89,6 @@ class Diagnostics:
         self._updates: list[float] = []
         self._totals: list[float] = []
         self._largest_gap = 0
-        self._latency: int | None = None
         self._dropped_before = self.dropped
         self._refused_before = self._refused_now
         self._refused_now = Counter()
@@ -95,7 +103,7 @@ class Diagnostics:
         if gap > self._largest_gap:
             self._largest_gap = gap
         self._last_stamps[name] = stamp
-        self._latency = latency
+        self.latency.take(name, stamp, latency)
         return self._heard(now, name)
 
     def taken(self, now: float, name: str) -> bool:
@@ -142,12 +150,10 @@ class Diagnostics:
         """Sum up the second that ends, and begin the next."""
         for feet in self.feet.values():
             feet.second_over()
+        self.latency.second_over()
         changed = self._judge(now, at_its_end=True)
         updates = self._updates
-        latency = None if self._latency is None else self._latency / NANOSECONDS
-        if latency is not None and abs(latency) >= COMPARABLE:
-            latency = None
-        self._second = len(updates) / max(now - self._began, 1e-9), self._largest_gap / NANOSECONDS, latency
+        self._second = len(updates) / max(now - self._began, 1e-9), self._largest_gap / NANOSECONDS
         self._costs = [median(updates), max(updates), median(self._totals)] if updates else None
         self._begin_second(now)
         return changed
@@ -159,7 +165,7 @@ class Diagnostics:
         )
 
     def _values(self, now: float) -> dict[str, str]:
-        rate, largest_gap, latency = self._second
+        rate, largest_gap = self._second
         update, longest, total = [1e6 * cost for cost in self._costs] if self._costs else (None, None, None)
         apart = [one.kind for one in self.inputs.misfits]
         figures: list[tuple[str, str, object]] = [
@@ -172,7 +178,7 @@ class Diagnostics:
             ("samples.lost", "d", self.lost),
             *[(f"incompatible_{kind.lower()}", "d", apart.count(kind)) for kind in ("QoS", "type")],
             ("samples.seconds_since_last", ".3f", self.inputs.since_last(now)),
-            ("samples.latency", ".6f", latency),
+            ("samples.latency", ".6f", self.latency.seconds),
             *[(f"refused.{one.input}.{one.status.name}", "d", self._refused[one]) for one in sorted(self._refused)],
             ("cost_us.update.median", ".1f", update),
             ("cost_us.update.max", ".1f", longest),
@@ -211,5 +217,8 @@ class Diagnostics:
         flaw, is_lost = self.inputs.flaw(now)
         if flaw:
             return ERROR if is_lost else WARN, flaw
+        if self.latency.flaw:
+            return WARN, self.latency.flaw
         flaws = [*[feet.flaw for feet in self.feet.values() if feet.flaw], *self.doubts()]
-        return (WARN, flaws[0]) if flaws else (OK, "predicting")
+        note = f"; {self.latency.note}" if self.latency.note else ""
+        return (WARN, flaws[0]) if flaws else (OK, f"predicting{note}")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import time
+from collections.abc import Callable
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
@@ -89,6 +91,8 @@ class Reporter:
             from .messages.deck_state import DECK_STATE
 
             self._deck = Outlet(publisher(node, "~/deck", DECK_STATE.type_name))
+        self.clock: Callable[[], int] = time.time_ns
+        """The time (ns) with which stamps are compared."""
         self._node = node
         self._name = node.get_fully_qualified_name().lstrip("/")
         self._monitor = monitor
@@ -100,12 +104,16 @@ class Reporter:
         # Last, because what is drawn takes the longest to load, and nobody waits for it.
         self.markers = MarkerTopic(self._node, self._monitor)
         self._support = inputs[0] if self._monitor.deck is not None else ""
-        self.diagnostics = Diagnostics(self._name, perf_counter(), inputs)
+        self.diagnostics = Diagnostics(self._name, perf_counter(), inputs, self._horizon)
+        self._choose_clock()
         self.diagnostics.doubts = self._monitor.doubts
         self.diagnostics.lost = None if self.on_lost is None else 0
         for body, scene in self._monitor.scenes.items():
             if scene.walking is not None:
                 self.diagnostics.feet[body] = FeetReport(body, self._monitor.predictors[body].contacts)
+
+    def _horizon(self, name: str) -> float:
+        return self._monitor.scenes[name.rpartition("/")[0]].horizon
 
     def _on_lost(self, event: Any) -> None:
         self.diagnostics.lost = (self.diagnostics.lost or 0) + event.total_count_change
@@ -145,13 +153,28 @@ class Reporter:
 
     def second_over(self) -> None:
         """Sum up a second of the steady clock, in which time goes on for the units too."""
-        now = perf_counter()
+        now, latency = perf_counter(), self.diagnostics.latency
+        had_flaw = latency.flaw
         self.diagnostics.second_over(now)
+        if latency.flaw and not had_flaw:
+            self._node.get_logger().warning(latency.flaw)
+        self._choose_clock()
         if self._monitor.watch is not None and self._time is not None:
             stamp, heard = self._time
             self._monitor.silent(stamp + round((now - heard) * NANOSECONDS))
         self.markers.look_for_viewers()
         self._publish(True)
+
+    def _choose_clock(self) -> None:
+        """Compare stamps with simulated time where `use_sim_time`, which may be set at any time, says so.
+
+        The clock of this machine is read in a tenth of the time that rclpy's takes.
+        """
+        is_simulated = self.diagnostics.latency.is_simulated = self._node.get_clock().ros_time_is_active
+        self.clock = self._simulated_time if is_simulated else time.time_ns
+
+    def _simulated_time(self) -> int:
+        return int(self._node.get_clock().now().nanoseconds)
 
     def _publish(self, changed: bool) -> None:
         """Publish the reports on the units that are due, after that of the node if it has changed."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Iterable
 from functools import partial
 from time import perf_counter
@@ -113,7 +112,7 @@ class BodyTopics:
         except MalformedMessage:
             self._reporter.refuse(self._topic, Status.MALFORMED)
             return
-        latency = time.time_ns() - sample.stamp
+        latency = self._reporter.clock() - sample.stamp
         decoded = perf_counter()
         prediction = self._update(sample)
         update = perf_counter() - decoded

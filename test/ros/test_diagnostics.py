@@ -11,6 +11,7 @@ from impact_predictor.prediction.types import Leftover, Score, SpatialTwist, Sta
 from impact_predictor.ros.cdr import ERROR, OK, WARN, decode_diagnostic_array, diagnostic_array
 from impact_predictor.ros.diagnostics import Diagnostics
 from impact_predictor.ros.inputs import STALE_AFTER, Inputs, Misfit, Refusal
+from impact_predictor.ros.latency import RECORDED
 
 SECOND = 1_000_000_000
 BAD = Refusal("odom", Status.NOT_FINITE)
@@ -159,12 +160,47 @@ def test_rate_gap_and_cost_are_those_of_the_second_that_is_over(diagnostics):
     assert "cost_us.update.median" not in report(diagnostics).values
 
 
-def test_latency_is_told_only_where_stamps_come_from_the_same_clock(diagnostics):
-    accept(diagnostics, 0.1, latency=2_000_000)
+@pytest.mark.parametrize(
+    ("latency", "is_simulated", "level", "message"),
+    [
+        (0.002, False, OK, "predicting"),
+        (-0.002, False, OK, "predicting"),
+        (0.2, False, OK, "predicting"),
+        (-3.0, False, WARN, "stamps on odom are 3.0 s ahead of this machine's clock, and predictions reach 0.25 s"),
+        (-3600.0, False, WARN, "stamps on odom are 3,600.0 s ahead of this machine's clock"),
+        (3.0, False, WARN, "stamps on odom are 3.0 s behind this machine's clock"),
+        (RECORDED + 1.0, True, WARN, "stamps on odom are 61.0 s behind the simulated clock"),
+        (-3.0, True, WARN, "stamps on odom are 3.0 s ahead of the simulated clock"),
+    ],
+)
+def test_samples_older_than_predictions_reach_or_from_the_future_are_a_warning(latency, is_simulated, level, message):
+    diagnostics = Diagnostics("impact_predictor", 0.0, horizon=lambda _: 0.25)
+    diagnostics.latency.is_simulated = is_simulated
+    accept(diagnostics, 0.9, latency=round(latency * SECOND))
     diagnostics.second_over(1.0)
-    assert report(diagnostics).values["samples.latency"] == "0.002000"
-    accept(diagnostics, 1.1, latency=1_700_000_000 * SECOND)
-    diagnostics.second_over(2.0)
+    assert report(diagnostics).level == level
+    assert report(diagnostics).message.startswith(message)
+    assert float(report(diagnostics).values["samples.latency"]) == latency
+
+
+def test_a_recording_that_is_played_is_no_warning_but_its_day_is_told():
+    diagnostics = Diagnostics("impact_predictor", 0.0, horizon=lambda _: 0.25)
+    accept(diagnostics, 0.9, stamp=1_500_000_000 * SECOND, latency=200_000_000 * SECOND)
+    diagnostics.second_over(1.0)
+    assert (diagnostics.level, diagnostics.message) == (
+        OK,
+        "predicting; stamps are of 2017-07-14 02:40 UTC, as those of a recording",
+    )
+    assert "samples.latency" not in report(diagnostics).values
+
+
+def test_a_clock_that_is_set_right_is_no_warning_any_more_and_silence_has_no_latency():
+    diagnostics = Diagnostics("impact_predictor", 0.0, horizon=lambda _: 0.25)
+    for now, latency, level in ((0.9, -3.0, WARN), (1.9, 0.001, OK)):
+        accept(diagnostics, now, latency=round(latency * SECOND))
+        diagnostics.second_over(now + 0.1)
+        assert diagnostics.level == level
+    diagnostics.second_over(2.5)
     assert "samples.latency" not in report(diagnostics).values
 
 

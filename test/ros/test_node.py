@@ -19,6 +19,7 @@ from nav_msgs.msg import Odometry
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.serialization import serialize_message
+from rosgraph_msgs.msg import Clock
 from std_msgs.msg import UInt8
 
 from impact_predictor.ros.process import executor_of, message_class
@@ -177,6 +178,26 @@ def test_publishers_and_subscribers_of_another_type_are_named_in_diagnostics_and
         with peer_of_node(()) as viewer:
             viewer.node.create_subscription(UInt8, "/impact_predictor/prediction", print, RELIABLE)
             peer.until_reported(lambda report: report.values["incompatible_type"] == "2" and report.level == ERROR)
+
+
+@pytest.mark.slow
+def test_stamps_are_compared_with_the_simulated_clock_where_there_is_one(peer):
+    with running(*FIXED_POINTS, "-p", "use_sim_time:=true") as node:
+        samples = peer.found(peer.publisher(Odometry, "odom", RELIABLE))
+        clock = peer.publisher(Clock, "/clock", RELIABLE)
+
+        def tell(k, ahead):
+            clock.publish(Clock(clock=odometry(k).header.stamp))
+            samples.publish(odometry(k + ahead))
+
+        steps = iter(range(1, 10_000))
+        peer.until_reported(
+            lambda report: report.level == OK and abs(float(report.values.get("samples.latency", "1"))) < 0.2,
+            lambda: tell(next(steps), 0),
+        )
+        said = "stamps on odom are 3.0 s ahead of the simulated clock"
+        peer.until_reported(lambda report: report.message.startswith(said), lambda: tell(next(steps), 300))
+        assert said in node.complained()
 
 
 @pytest.fixture
