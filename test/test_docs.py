@@ -9,8 +9,13 @@ import sys
 from pathlib import Path
 
 import pytest
+from test_feet_messages import LANDING, STANDING, answer
 
 import impact_predictor
+from impact_predictor.prediction.types import Status
+from impact_predictor.ros.diagnostics import Diagnostics
+from impact_predictor.ros.feet_report import FeetReport
+from impact_predictor.ros.inputs import Refusal
 
 ROOT = Path(__file__).parents[1]
 PAGES = [*ROOT.glob("*.md"), *ROOT.glob("docs/*.md"), *ROOT.glob("examples/*/README.md")]
@@ -95,3 +100,14 @@ def test_every_page_can_be_reached_from_the_readme() -> None:
 def test_the_reference_has_every_public_name() -> None:
     named = re.findall(r"^\.\. auto\w+:: impact_predictor\.(\w+)$", (ROOT / "docs/api.md").read_text(), re.MULTILINE)
     assert sorted(named) == sorted(impact_predictor.__all__)
+
+
+def test_the_page_of_the_node_explains_every_key_of_its_diagnostics_and_no_other() -> None:
+    page = (ROOT / "docs/node.md").read_text().partition("## Keys of `/diagnostics`")[2].partition("\n## ")[0]
+    diagnostics, feet = Diagnostics("impact_predictor", 0.0), FeetReport("")
+    diagnostics.feet[""] = feet
+    diagnostics.refused(0.1, Refusal("odom", Status.NOT_FINITE))
+    feet.take(answer(STANDING, landing=LANDING))
+    named = {"refused.odom.NOT_FINITE": "refused.<input>.<status>", "feet.landings.RF": "feet.landings.<foot>"}
+    keys = [named.get(key, key) for key, _, _ in diagnostics.figures(1.0)]
+    assert sorted(re.findall(r"^\| `(\S+)` \|", page, re.MULTILINE)) == sorted(keys)

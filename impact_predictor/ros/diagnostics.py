@@ -5,15 +5,19 @@ from __future__ import annotations
 import math
 from collections import Counter, deque
 from collections.abc import Callable, Iterable, Sequence
+from typing import Final
 
 from ..native import form
 from ..prediction.score import median
 from ..prediction.types import Score, Status
 from ..stamps import NANOSECONDS
+from ..wording import counted
 from .cdr import ERROR, OK, WARN, StatusBytes, diagnostic_status, pairs_of
 from .feet_report import REMEMBERED, FeetReport
 from .inputs import STALE_AFTER, Inputs, Refusal
 from .latency import Latency
+
+_NOT_SCORED: Final = "of driven feet: their times are compared, but no twists, for what follows is not the impact alone"
 
 
 def shown(figures: Iterable[tuple[str, str, object]]) -> dict[str, str]:
@@ -76,7 +80,7 @@ class Diagnostics:
         self.dropped = 0
         """Samples that were dropped because newer ones waited behind them."""
         self._last_stamps: dict[str, int] = {}
-        self._touchdowns = 0
+        self._touchdowns = self._landings = 0
         self._whole = _Errors()
         self._in_plane = _Errors()
         self._second = 0.0, 0.0
@@ -141,6 +145,7 @@ class Diagnostics:
         """Count a touchdown of a body, which has happened."""
         self._body = body
         self._touchdowns += 1
+        self._landings += score.landing is not None
         if score.spatial is not None and not score.leftover_6d:
             self._whole.add(score.spatial.error)
         if score.scored and score.relative_error is not None:
@@ -161,12 +166,14 @@ class Diagnostics:
     def report(self, now: float) -> StatusBytes:
         """Everything, as one status of a diagnostic_msgs/DiagnosticArray."""
         return diagnostic_status(
-            self.level, f"{self._name}: predictions", self.message, self._body, pairs_of(self._values(now))
+            self.level, f"{self._name}: predictions", self.message, self._body, pairs_of(shown(self.figures(now)))
         )
 
-    def _values(self, now: float) -> dict[str, str]:
+    def figures(self, now: float) -> list[tuple[str, str, object]]:
+        """Key, format and value of each figure, which docs/node.md explains; None where it is not known."""
         rate, largest_gap = self._second
         update, longest, total = [1e6 * cost for cost in self._costs] if self._costs else (None, None, None)
+        driven = f"{counted(self._landings, 'landing')} {_NOT_SCORED}" if self._landings else None
         apart = [one.kind for one in self.inputs.misfits]
         figures: list[tuple[str, str, object]] = [
             ("runs", "", form()),
@@ -188,10 +195,11 @@ class Diagnostics:
             ("touchdowns.median_relative_error_6d", ".4f", self._whole.median),
             ("touchdowns.scored", "d", self._in_plane.number),
             ("touchdowns.median_relative_error", ".4f", self._in_plane.median),
+            ("touchdowns.not_scored", "", driven),
         ]
         for feet in self.feet.values():
             figures += feet.figures()
-        return shown(figures)
+        return figures
 
     def _judge(self, now: float, *, at_its_end: bool = False) -> bool:
         """Find the level anew; whether it has changed. Only at the end of a second it is known what did not come."""

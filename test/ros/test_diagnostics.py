@@ -1,6 +1,7 @@
 from math import hypot
 
 import pytest
+from test_feet_messages import SCORE
 from test_score import only_score
 from test_spatial_score import HALF, TOSS, falling, gone_on, samples_of, told_after
 
@@ -223,6 +224,17 @@ def test_touchdowns_scored_by_the_whole_twist_have_a_count_and_a_median_beside_t
     error = 0.2 / hypot(*toss.velocity, *(HALF * toss.spin))
     assert float(values["touchdowns.median_relative_error_6d"]) == pytest.approx(error, rel=1e-3)
     assert "touchdowns.median_relative_error" not in values
+
+
+def test_of_landings_of_driven_feet_it_is_told_why_no_twist_of_them_is_scored(diagnostics):
+    for _ in range(2):
+        diagnostics.settled("dog", SCORE)
+    values = report(diagnostics).values
+    assert (values["touchdowns"], values["touchdowns.scored_6d"], values["touchdowns.scored"]) == ("2", "0", "0")
+    assert values["touchdowns.not_scored"].startswith("2 landings of driven feet: ")
+    cube = Diagnostics("impact_predictor", 0.0)
+    cube.settled("cube", scored(0.05))
+    assert "touchdowns.not_scored" not in report(cube).values
 
 
 def test_of_several_inputs_the_one_that_is_missing_or_silent_is_named():
