@@ -20,6 +20,8 @@ def flaw_of(monitor: Monitor, body: str | None, status: Status, message: Any) ->
     """
     if status is Status.NO_TRANSFORM and monitor.tree is not None:
         return monitor.tree.flaw
+    if status is Status.STAMP_REPEATED and getattr(message, "stamp", None) == 0:
+        return "its stamp is 0, as the one before: fill in header.stamp of all messages"
     predictor = None if body is None else monitor.predictors.get(body)
     if predictor is None:
         return _other_support(monitor, message) if status is Status.WRONG_FRAME else ""

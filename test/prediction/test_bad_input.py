@@ -14,6 +14,8 @@ from hypothesis import strategies as st
 
 from impact_predictor.errors import InputError
 from impact_predictor.prediction.checks import PAUSE
+from impact_predictor.prediction.flaws import flaw_of
+from impact_predictor.prediction.monitor import Monitor
 from impact_predictor.prediction.predictor import Predictor
 from impact_predictor.prediction.scene import Scene
 from impact_predictor.prediction.types import Geometry, Prediction, Sample, Status, Vector3
@@ -237,3 +239,13 @@ def test_no_sample_whatever_its_numbers_raises_or_makes_a_nan(scene: Scene, samp
         for score in [prediction.score] if prediction.score else []:
             assert all(map(math.isfinite, numbers_of(score))), score
     assert all(math.isfinite(number) for score in predictor.finish() for number in numbers_of(score))
+
+
+@pytest.mark.parametrize(("stamp", "said"), [(0, "its stamp is 0, as the one before: fill in header.stamp"), (5, "")])
+def test_stamps_that_nobody_fills_in_are_told_from_those_that_repeat(stamp: int, said: str) -> None:
+    monitor, sample = Monitor({"": CUBE_SCENE}), flying_sample(stamp)
+    assert monitor.update("", sample).status is Status.ACCEPTED
+    assert monitor.update("", sample).status is Status.STAMP_REPEATED
+    flaw = flaw_of(monitor, "", Status.STAMP_REPEATED, sample)
+    assert flaw.startswith(said)
+    assert bool(flaw) == bool(said)
