@@ -63,7 +63,7 @@ def test_a_status_for_each_foot_follows_that_of_the_prediction_which_stays_as_it
     feet = STANDING, SWINGING, ALONE
     first, *others = told(*feet, touchdown=touchdown)
     assert [first] == told(touchdown=touchdown)
-    assert [one.name for one in others] == ["impact_predictor/foot"] * 3
+    assert [one.name for one in others] == [f"impact_predictor/foot/{foot.name}" for foot in feet]
     for foot, status in zip(feet, others, strict=True):
         places = dict(zip(("place.x", "place.y", "place.z"), foot.place or (), strict=False))
         known = {name: value for name, value in foot._asdict().items() if value is not None} | places

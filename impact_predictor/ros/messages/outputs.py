@@ -102,7 +102,7 @@ def frame_of(prediction: Prediction) -> str:
 
 
 def _foot_status(foot: Foot) -> StatusBytes:
-    """A foot, whose name is the hardware; the level is WARN where its force sensor does not agree."""
+    """A foot, whose name is the hardware, too; the level is WARN where its force sensor does not agree."""
     message = "stands" if foot.stands else "swings"
     if not foot.stands and foot.lead_time is not None:
         message += f", lands in {foot.lead_time * 1e3:.1f} ms"
@@ -111,7 +111,7 @@ def _foot_status(foot: Foot) -> StatusBytes:
         level, message = WARN, f"{message}, but its force sensor does not agree"
     pairs: list[bytes] = []
     FOOT.add_to(pairs, foot)
-    return diagnostic_status(level, "impact_predictor/foot", message, foot.name, pairs)
+    return diagnostic_status(level, f"{NODE}/foot/{foot.name}", message, foot.name, pairs)
 
 
 def encode_score(prediction: Prediction) -> bytes | None:
