@@ -52,7 +52,7 @@ $(READY): setup.py constraints/jazzy.txt tools/requirements.txt
 	@[ "$(ROS)" != unusable ] || { \
 	  echo "make: ROS $(ROS_DISTRO) is sourced, but $(PYTHON) cannot import its rclpy; give the Python it was built for: make PYTHON=/usr/bin/python3" >&2; exit 1; }
 	@echo "Installing impact_predictor and what it needs into .venv (ROS: $(ROS)), and compiling it where there is a C compiler:"
-	@echo "one to three minutes; IMPACT_PREDICTOR_PLAIN=1 leaves the compiling out, which is half of them."
+	@echo "some minutes; IMPACT_PREDICTOR_PLAIN=1 leaves the compiling out, which is half of them."
 	@$(PYTHON) -m venv --clear $(SYSTEM_SITE) .venv
 	@# The messages of a sourced ROS are compiled against the numpy of the system.
 	@[ "$(ROS)" = wheels ] || $(BIN)/python -c 'import numpy; print("numpy==" + numpy.__version__)' > $(CONSTRAINTS)

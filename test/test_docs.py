@@ -12,6 +12,7 @@ import pytest
 from test_feet_messages import LANDING, STANDING, answer
 
 import impact_predictor
+from impact_predictor.parameters.table import PARAMETERS
 from impact_predictor.prediction.types import Status
 from impact_predictor.ros.diagnostics import Diagnostics
 from impact_predictor.ros.feet_report import FeetReport
@@ -111,3 +112,13 @@ def test_the_page_of_the_node_explains_every_key_of_its_diagnostics_and_no_other
     named = {"refused.odom.NOT_FINITE": "refused.<input>.<status>", "feet.landings.RF": "feet.landings.<foot>"}
     keys = [named.get(key, key) for key, _, _ in diagnostics.figures(1.0)]
     assert sorted(re.findall(r"^\| `(\S+)` \|", page, re.MULTILINE)) == sorted(keys)
+
+
+def test_the_page_of_reliability_names_every_parameter_that_cannot_be_set_while_the_node_runs() -> None:
+    text = (ROOT / "docs/reliability.md").read_text()
+    rows = text.partition("| cannot change while the node runs |")[2].partition("\n\n")[0].splitlines()[2:]
+    told = {}
+    for row in rows:
+        _, names, why, _ = row.split("|")
+        told |= dict.fromkeys(re.findall(r"`(.*?)`", names), why.strip())
+    assert told == {name: one.fixed for name, one in PARAMETERS.items() if one.fixed}
