@@ -16,6 +16,7 @@ LONGEST = NANOSECONDS  # ns for which none may stand: runners fly for a part of 
 NEAR: Final = 4.0  # contact tolerances by which the ground that feet show may lie off the scene's
 SURE: Final = 3.0  # standard deviations of a gap that the contact tolerance must be ...
 ROOM: Final = 4.0  # ... and that it had better be
+LARGEST_BALL: Final = 0.1  # m: no foot is a larger one
 SHOWN: Final = 20  # footholds from which on a map that tells nothing under them is worth a word
 
 
@@ -84,6 +85,11 @@ class GroundDoubts:
     def _raise(self, off: float) -> str:
         """What to do about feet that are off the ground by so many m."""
         height = f"set support.height to {self._scene.height + off:.4f}"
-        is_point = self._scene.walking is not None and not self._scene.walking.radius and off > 0.0
+        walking = self._scene.walking
+        # A model of the robot has its balls.
+        is_point = walking is not None and not walking.radius and walking.robot is None and 0.0 < off <= LARGEST_BALL
         balls = f", or feet.radius to [{off:.3g}] if the points are the centres of balls" if is_point else ""
-        return f"{height}{balls}, or compare the units of the points (m), and the frames of body and points"
+        return (
+            f"{height}{balls}, or compare the units of the points (m), the frames of body and points, and the order of "
+            "quaternions (x, y, z, w)"
+        )

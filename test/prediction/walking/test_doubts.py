@@ -46,6 +46,12 @@ def test_of_feet_that_stand_above_the_ground_the_height_and_the_radius_are_told(
     assert doubts(balls, lambda k: 0.021) == ()
 
 
+def test_of_feet_that_stand_far_above_the_ground_no_ball_is_told_and_the_order_of_quaternions() -> None:
+    (found,) = doubts(SCENE, lambda k: 0.6)
+    assert found.startswith("feet stand 0.6 m above the ground: set support.height to 0.6000, or compare the units")
+    assert found.endswith("the order of quaternions (x, y, z, w)")
+
+
 def test_feet_that_never_stand_are_told_with_how_near_they_came() -> None:
     (found,) = doubts(SCENE, lambda k: 0.08 + 0.05 * np.sin(0.1 * k))
     assert found.startswith("no foot came nearer to the ground than 0.03 m: set support.height to 0.03")
