@@ -14,7 +14,7 @@ from ..stamps import NANOSECONDS
 from ..wording import counted
 from .cdr import ERROR, OK, WARN, StatusBytes, diagnostic_status, pairs_of
 from .feet_report import REMEMBERED, FeetReport
-from .inputs import STALE_AFTER, Inputs, Refusal
+from .inputs import STALE_AFTER, InputReport, Refusal
 from .latency import Latency
 
 _NOT_SCORED: Final = "of driven feet: their times are compared, but no twists, for what follows is not the impact alone"
@@ -63,7 +63,7 @@ class Diagnostics:
         self.message = "no sample yet"
         self.lost: int | None = 0
         """Messages that the middleware says it has lost; None where it is not asked."""
-        self.inputs = Inputs(inputs, now)
+        self.inputs = InputReport(inputs, now)
         """What comes on each input."""
         self.latency = Latency(horizon)
         """How old the samples are."""

@@ -65,7 +65,7 @@ class _Refused(NamedTuple):
     flaw: str
 
 
-class Inputs:
+class InputReport:
     """Knows of each input that is to keep coming when a message was last accepted, and what was refused since.
 
     `now` is always in s of one steady clock.

@@ -11,7 +11,7 @@ from impact_predictor.prediction.checks import REMEDIES
 from impact_predictor.prediction.types import Leftover, Score, SpatialTwist, Status, Touchdown
 from impact_predictor.ros.cdr import ERROR, OK, WARN, decode_diagnostic_array, diagnostic_array
 from impact_predictor.ros.diagnostics import Diagnostics
-from impact_predictor.ros.inputs import STALE_AFTER, Inputs, Misfit, Refusal
+from impact_predictor.ros.inputs import STALE_AFTER, InputReport, Misfit, Refusal
 from impact_predictor.ros.latency import RECORDED
 
 SECOND = 1_000_000_000
@@ -340,7 +340,7 @@ def silences(inputs, topics, now=6.0):
 
 
 def test_where_all_messages_are_refused_the_log_says_so_with_their_number_and_the_last_reason():
-    inputs = Inputs([*TOPICS], 0.0)
+    inputs = InputReport([*TOPICS], 0.0)
     for _ in range(1000):
         inputs.refused(2.0, Refusal("odom", Status.BAD_QUATERNION), "")
     inputs.refused(3.0, Refusal("odom", Status.WRONG_FRAME), "frame_id is 'map', but 'odom' is wanted")
@@ -353,10 +353,10 @@ def test_where_all_messages_are_refused_the_log_says_so_with_their_number_and_th
 
 
 def test_where_nothing_comes_the_log_says_once_for_all_such_inputs_whether_it_is_qos_a_type_or_nobody():
-    inputs = Inputs([*TOPICS], 0.0)
+    inputs = InputReport([*TOPICS], 0.0)
     nobody = "nothing has come on /dog/joint_states and /dog/odom for 5 s: nobody publishes there"
     assert silences(inputs, TOPICS) == [nobody]
-    inputs = Inputs([*TOPICS], 0.0)
+    inputs = InputReport([*TOPICS], 0.0)
     inputs.publishers["odom"] = 1
     inputs.misfits = [Misfit("type", "/dog/odom", "driver publishes strings")]
     assert silences(inputs, TOPICS) == [
@@ -368,7 +368,7 @@ def test_where_nothing_comes_the_log_says_once_for_all_such_inputs_whether_it_is
 @pytest.mark.parametrize("is_accepted", [False, True], ids=["refused too", "trusted now and then"])
 def test_of_bodies_that_are_refused_for_the_sake_of_their_support_the_log_says_one_sentence(is_accepted):
     names = ["support/odom", *[f"crate{k}/odom" for k in range(30)]]
-    inputs, topics = Inputs(names, 0.0), {name: f"/{name}" for name in names}
+    inputs, topics = InputReport(names, 0.0), {name: f"/{name}" for name in names}
     for name in names:
         inputs.refused(3.0, Refusal(name, Status.SUPPORT_JUMPED), "")
     if is_accepted:
