@@ -39,8 +39,8 @@ ASTRAY = 0.006
 """m/s by which the support may go on otherwise than it was led on from message to message: bodies that are sampled in
 between seem to approach it so fast."""
 
-GROWS = 2.5  # with this power of the time between two messages
-SEEN = 20.0  # s over which it is averaged
+GROWS = 2.5  # the power of the time between two messages with which that speed grows
+SEEN = 20.0  # s over which its mean square is taken
 
 
 class Deck:
@@ -163,7 +163,7 @@ class Deck:
             return self.last or self._state
         second = self._history[-1]
         if gap > 0:
-            self._leads = self._leads or 2e-9 * gap > self._step > 0.0
+            self._leads = self._leads or 2 * gap > NANOSECONDS * self._step > 0.0
             return self._moment(later(second, stamp))
         for first in reversed(self._history):
             if first.stamp <= stamp:
@@ -273,6 +273,7 @@ class Deck:
         """Begin anew; until accelerations are known again `state` says why they are not."""
         self._state = state
         self._seen = self._latest = self._ahead = None
+        self._missed = NOWHERE
         self._linear.clear()
         self._angular.clear()
         self._history.clear()
