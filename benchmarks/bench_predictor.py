@@ -75,9 +75,9 @@ def fastest(scene: Scene, record: Sequence[BagMessage], runs: int) -> NDArray[np
 
 def by_kind(title: str, costs: NDArray[np.float64], kinds: list[int]) -> Table:
     """The costs by what the body does."""
-    table = Table(f"us per sample: {title}", "samples", "median", "mean", "99 %")
+    table = Table(f"us per sample: {title}", "samples", "median", "mean", "99 %", "most")
     for name, chosen in [("all", costs), *((kind, costs[np.equal(kinds, k)]) for k, kind in enumerate(KINDS))]:
-        numbers = np.median(chosen), np.mean(chosen), np.percentile(chosen, 99)
+        numbers = np.median(chosen), np.mean(chosen), np.percentile(chosen, 99), np.max(chosen)
         table.add_row(name, str(len(chosen)), *(f"{number:.1f}" for number in numbers))
     return table
 

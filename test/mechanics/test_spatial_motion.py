@@ -49,6 +49,19 @@ def on_corner(draw: random.Random, slip: float) -> tuple[SpatialState, int]:
     return SpatialState((0.3, -0.2, -corners[lowest, 2]), pose, tuple(v), w), lowest
 
 
+def nearly_flat(draw: random.Random) -> tuple[SpatialState, list[int]]:
+    """A cube on some corners of a face that hardly leans and hardly lifts, but slips and turns on the support."""
+    lean, spin = 10.0 ** draw.uniform(-9.0, 0.0), 10.0 ** draw.uniform(-8.0, 0.7)
+    pose = draw.gauss(0.0, lean), draw.choice([0.0, draw.gauss(0.0, lean)]), draw.gauss(0.0, 1.0), 1.0
+    heights = Rotation.from_quat(pose).apply(CUBE)[:, 2]
+    standing = [int(i) for i in heights.argsort()[: draw.choice([1, 2, 3, 4])]]
+    slip = 10.0 ** draw.uniform(-8.0, 0.3)
+    v = draw.gauss(0.0, slip), draw.gauss(0.0, slip), draw.gauss(0.0, slip)
+    lifts = draw.choice([0.0, spin])
+    w = draw.gauss(0.0, lifts), draw.gauss(0.0, lifts), draw.gauss(0.0, spin)
+    return SpatialState((0.0, 0.0, -float(heights.min())), pose, v, w), standing
+
+
 def quaternion(draw: random.Random) -> tuple[float, float, float, float]:
     return draw.gauss(0.0, 1.0), draw.gauss(0.0, 1.0), draw.gauss(0.0, 1.0), draw.gauss(0.0, 1.0)
 
@@ -301,7 +314,7 @@ def test_the_first_fall_of_a_gap_that_is_a_cubic_over_a_step_is_found_wherever_i
         ends = [[gap(s), gap.deriv()(s) / h, gap.deriv(2)(s) / h**2] for s in (0.0, 1.0)]
         expected = min([s for s in roots if 0.0 < s < 1.0 and gap.deriv()(s) < 0.0], default=2.0)
         if ends[0][0] > 0.0:
-            assert crossing(*ends, 0, h, 0.0) == pytest.approx(expected, abs=1e-4)
+            assert crossing(*ends, 0, h, 0.0, 0.0) == pytest.approx(expected, abs=1e-4)
             falls += expected < 1.0
     assert falls > 50
 
@@ -321,6 +334,39 @@ def test_a_corner_that_lifts_does_not_strike_as_it_leaves() -> None:
         v = -np.cross(spin, corner) + [0.3, 0.1, 0.0]
         found = fall(SpatialState((0.0, 0.0, -corner[2]), pose, tuple(v), spin), ALIKE, CUBE, (4,), 0.2)
         assert found.point != 4 or found.time > 0.05
+
+
+def test_points_that_rest_and_lift_in_turns_do_not_hold_a_motion_up(monkeypatch: pytest.MonkeyPatch) -> None:
+    steps = 0
+
+    def counted(*given: Any) -> tuple[float, int]:
+        nonlocal steps
+        steps += 1
+        return step(*given)
+
+    falling = as_python("mechanics.motion.falling")
+    step = falling.step
+    monkeypatch.setattr(falling, "step", counted)
+    monkeypatch.setattr(spatial, "solver", lambda: without_numba(PYTHON.fall))
+    # A toss that comes to rest: on two corners of its face it lies, the third lifts and the fourth is below the ground.
+    cube = [(x, y, z - 0.0063) for x, y, z in product((-0.0524, 0.0524), repeat=3)]
+    recorded = SpatialState(
+        position=(0.0, 0.0, 0.04637319676404812),
+        orientation=(0.3481868013580559, 0.9374133730865669, 0.004589549766589046, 0.0010273029985814475),
+        velocity=(0.44033849560780725, -0.45332442439613957, 0.024105598334132387),
+        angular_velocity=(-1.1949950281394515, -0.10963740239632569, -3.1344336427110346),
+    )
+    assert fall(recorded, (0.002859459459459459,) * 3 + (0.0,) * 3, cube, (3, 5, 7), 0.1734, horizon=0.25).point < 0
+    assert steps < 30
+    draw, most = random.Random(4), 0
+    steps = 0
+    for _ in range(500):
+        before = steps
+        start, standing = nearly_flat(draw)
+        fall(start, ALIKE, CUBE, standing, draw.choice([0.0, 0.1, 0.5, 1.0, 2.0]), horizon=0.25)
+        most = max(most, steps - before)
+    assert steps < 25 * 500
+    assert most < 600
 
 
 @pytest.mark.parametrize("plain", [False, True], ids=["compiled", "plain"])

@@ -48,13 +48,19 @@ _MAX_STEPS: Final = 300
 _MAX_CUTS: Final = 30
 """More than the secant needs to find the events of a step."""
 _STUCK: Final = 12
-"""Events without any time between them; more come only from rounding."""
+"""Events, besides one of each point, in a `_MOMENT`: more come only from rounding, or from forces near zero."""
+_MOMENT: Final = 1e-3
+"""Relative to the time scale of the motion."""
+_LONGER: Final = 8.0
+"""Each time that a motion is stuck, its points are held so many times longer."""
 _BLEND: Final = 0.5
 """Of the speed that its friction takes in a step is blended with the slip of a creeping point."""
 _POOR: Final = 4.0
 """Error of a step that is cut, relative to the tolerance, that is too much."""
 _GAP: Final = 1e-8
 """How near to zero a gap is found to close, relative to the size."""
+_THIN: Final = 1e-13
+"""Relative to the size: a point that rested has to come so far below the support; rounding moves it by less."""
 _LIGHT: Final = 1e-6
 """Relative to the scale of speeds: a point that approaches more slowly comes to rest, and does not strike."""
 _WILD: Final = 1e6
@@ -109,12 +115,12 @@ def measure(y: Floats, k: Floats, at: Count, points: Floats, frame: Floats, offs
         out[3 * i + 2] = az + alx * y_ - aly * x + wz * (wx * x + wy * y_ + wz * z) - z * square
 
 
-def crossing(now: Floats, then: Floats, i: Count, h: float, dip: float) -> float:
-    """Part of a step at which gap i first falls to 0 or below, or falls there; 2 for none.
+def crossing(now: Floats, then: Floats, i: Count, h: float, dip: float, slack: float) -> float:
+    """Part of a step at which gap i first falls to -`slack` or below, or falls there; 2 for none.
 
     Minus the part where the gap may have been there between: it is nearer to 0 than `dip`.
     """
-    g0, g1, r0, r1 = now[3 * i], then[3 * i], h * now[3 * i + 1], h * then[3 * i + 1]
+    g0, g1, r0, r1 = now[3 * i] + slack, then[3 * i] + slack, h * now[3 * i + 1], h * then[3 * i + 1]
     if g0 > 0.0 and g1 > dip and g0 + r0 / 3.0 > dip and g1 - r1 / 3.0 > dip:
         return 2.0
     c2, c3 = 3.0 * (g1 - g0) - 2.0 * r0 - r1, 2.0 * (g0 - g1) + r0 + r1
@@ -178,14 +184,18 @@ def follow(
     held, label, frame = stance[0], stance[1], stance[6]
     k, trial, now, then, before, after = scratch
     size, speed, weight = scale[0], scale[1], scale[2]
-    n, time, still = len(label), 0.0, 0
+    n, time, since, events = len(label), 0.0, 0.0, 0
+    moment, most = _MOMENT * sqrt(size / weight), _STUCK + len(label)
     struck = begin(y, offsets, model, stance, scratch)
     if struck >= 0:
         return 0.0, struck
     again, h = True, (0.3 if held[n] else 1.0) * sqrt(size / weight)
     for _ in range(_MAX_STEPS):
+        if events == most:
+            # Points that lift and rest in turns are held for a while: what would lift or begin to slip does not.
+            since, moment, events = time, moment * _LONGER, events + 1
         if again:
-            settle(time, y, k, model, stance)
+            settle(time, y, k, events < most, model, stance)
             if stays(time, horizon, y, k, trial, model, stance):
                 return horizon, -1
             locate(y, model, stance)
@@ -216,17 +226,17 @@ def follow(
             jam = 0
         if jam >= 0 and small:
             stop(y, model, stance, 2.0)
-            again = True
+            again, events = True, events + 1
             continue
         if jam >= 0 or (not error <= 1.0 and not small):
             h *= 0.2 if jam >= 0 or not error < 600.0 else 0.9 / sqrt(sqrt(error))
             continue
         root = sqrt(sqrt(sqrt(max(error, 1e-12))))  # error^(1/8)
         longer = h * min(4.0, 0.9 / (root * sqrt(root)))
-        h, error, event, goes = cut_at_event(time, h, error, turn, still < _STUCK, y, offsets, model, stance, scratch)
+        h, error, event, goes = cut_at_event(time, h, error, turn, events < most, y, offsets, model, stance, scratch)
         if (goes == _EARLY or not error <= _POOR) and not small:
             # What was at its border comes back to it, or leaves it at once.
-            h *= 0.25
+            h, events = h * 0.25, events + 1
             continue
         if goes == _ON:
             for i in range(13):
@@ -236,7 +246,8 @@ def follow(
             for i in range(2 * n):
                 before[i] = after[i]
             time += h
-            still = 0
+            if time - since > moment:
+                since, events = time, 0
         else:
             rates(time, y, k, 0, False, model, stance)
         if event < 0:
@@ -262,7 +273,7 @@ def follow(
             offsets[event] += now[3 * event]
             stand(y, event, model, stance)
         hold(y, stance, ROUNDING * speed)
-        again, h, still = True, longer, still + 1
+        again, h, events = True, longer, events + 1
     return horizon, -1
 
 
@@ -359,11 +370,14 @@ def first_event(
             if (abs(then[3 * i]) <= _GAP * size and rate < 0.0) or rests:
                 reached = i
                 continue
-            s = crossing(now, then, i, h, dip)
+            rested = now[3 * i] <= _GAP * size and abs(now[3 * i + 1]) <= _LIGHT * speed
+            s = crossing(now, then, i, h, dip, _THIN * size + max(0.0, -now[3 * i]) if rested else 0.0)
             if abs(s) < cut:
                 event, cut = i, abs(s)
-        elif may_change:
+        else:
             for m in range(2 * i, 2 * i + 2):
+                if not may_change and (m == 2 * i or label[i] == STICKS):
+                    continue
                 border = near(m, label)
                 if after[m] >= -border:
                     if after[m] <= border and after[m] < before[m]:

@@ -37,8 +37,11 @@ _TINY: Final = 1e-300
 _LONG: Final = 1e6
 
 
-def settle(time: float, y: Floats, k: Floats, model: Model, stance: Stance) -> None:
-    """Which of the standing points stick, slip and lift, with the derivative of y into k[:13]; a jam ends its slip."""
+def settle(time: float, y: Floats, k: Floats, may_change: bool, model: Model, stance: Stance) -> None:
+    """Which of the standing points stick, slip and lift, with the derivative of y into k[:13]; a jam ends its slip.
+
+    Unless they `may_change`, each does what it did before.
+    """
     friction, scale = model[3], model[4]
     held, label, toward, forces, arms = stance[0], stance[1], stance[2], stance[3], stance[4]
     n = len(label)
@@ -46,6 +49,9 @@ def settle(time: float, y: Floats, k: Floats, model: Model, stance: Stance) -> N
     for slot in range(held[n]):
         if label[held[slot]] == SLIPS:
             head(y, held[slot], model, stance)
+    if not may_change:
+        rates(time, y, k, 0, False, model, stance)
+        return
     if rates(time, y, k, 0, True, model, stance) >= 0:
         stop(y, model, stance, 2.0)
         if rates(time, y, k, 0, True, model, stance) >= 0:
