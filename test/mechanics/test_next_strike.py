@@ -250,3 +250,14 @@ for start, old in ((standing(body, 0.1), 0), (standing(body, 0.1, slip=0.5), 0),
 assert "numpy" not in sys.modules
 """
     subprocess.run([sys.executable, "-c", code], check=True)
+
+
+@pytest.mark.parametrize("stance", [None, 0])
+@pytest.mark.parametrize("omega", [0.0, -0.5])
+def test_numbers_of_numpy_are_numbers(stance: int | None, omega: float) -> None:
+    state, points = PlanarState(0.0, 0.5, 0.02, 0.3, 0.0, omega), ((-0.4, -0.5), (0.4, -0.5))
+    here = next_touchdown(state, points, stance, 0.1, 0.3)
+    as_numpy = PlanarState(*map(np.float64, state)), tuple((np.float64(x), np.float64(y)) for x, y in points)
+    there = next_touchdown(*as_numpy, stance, np.float64(0.1), np.float64(0.3))
+    assert (there.time, there.point) == (here.time, here.point)
+    assert here.point >= 0

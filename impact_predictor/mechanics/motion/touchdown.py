@@ -79,6 +79,9 @@ def next_touchdown(
     it strikes at time 0 when it moves down, and after it has risen otherwise. A body at rest on its points, or
     balanced, has no touchdown. Never raises and never returns NaN.
     """
+    # Numbers of numpy would compare to its booleans, with which nothing can be counted.
+    rho_squared, friction, horizon, gravity = float(rho_squared), float(friction), float(horizon), _floats(gravity)
+    state, points = PlanarState(*map(float, state)), tuple([_floats(point) for point in points])
     if stance is None:
         return _fly(state, points, gravity, horizon)
     foot_x, foot_y = points[stance]
@@ -187,3 +190,8 @@ def _fly(
         omega=omega,
     )
     return Fall(time=time, point=struck, state=now, motion=MotionKind.FLIGHT)
+
+
+def _floats(vector: Vector) -> Vector:
+    x, y = vector
+    return float(x), float(y)
