@@ -52,7 +52,7 @@ WITHOUT_AND_WITH: dict[str, tuple[dict[str, Any], dict[str, Any]]] = {
     "schedule": (WALKER, {**WALKER, "feet.has_schedule": True}),
     "terrain": (WALKER, {**WALKER, "feet.terrain": 0.02}),
     "friction of feet": (WALKER, {**WALKER, "feet.friction": [0.5, 0.6]}),
-    "ball feet": (WALKER, {**WALKER, "feet.radius": [0.02]}),
+    "radius of feet": (WALKER, {**WALKER, "feet.radius": [0.02]}),
     "restitution of feet": (WALKER, {**WALKER, "feet.restitution": [0.1]}),
     "transforms": (CRATE, {**CRATE, "tf.body_frame": "crate"}),
     "margins": (CRATE, {**CRATE, "margins": True}),

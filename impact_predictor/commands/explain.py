@@ -51,5 +51,5 @@ def explain(params: str, as_json: bool) -> None:
     console = Console()
     console.print(f"[bold]{escape(scene)}[/]: what this scene has, and what it leaves out\n", highlight=False)
     show(console, table)
-    console.print(f"\nThe node subscribes to {' and '.join(topics)}.", highlight=False, markup=False)
-    console.print(f"The predictor runs {form()}.", highlight=False, markup=False)
+    console.print(f"\nThe node subscribes to {' and '.join(topics)}.", highlight=False, markup=False, soft_wrap=True)
+    console.print(f"The predictor runs {form()}.", highlight=False, markup=False, soft_wrap=True)

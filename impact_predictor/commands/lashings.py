@@ -28,13 +28,23 @@ if TYPE_CHECKING:
 )
 @click.argument("params", metavar="PARAMS.yaml")
 @click.option(
-    "--vessel", nargs=4, type=float, required=True, help="Length, breadth and GM in m, service speed in knots."
+    "--vessel",
+    nargs=4,
+    type=float,
+    required=True,
+    metavar="LENGTH BREADTH GM SPEED",
+    help="Four numbers: length, breadth and GM in m, service speed in knots.",
 )
 @number("--position", "Where the units are stowed: part of the vessel's length, from 0 aft to 1.", required=True)
 @choice("--deck", "Where: on deck, high or low, in the 'tween deck or in the lower hold.", *LONGITUDINAL, default="low")
 @choice("--method", "The method of 7.2 (advanced) or of 7.3 (alternative).", *METHODS, default="advanced")
 @click.option(
-    "--spray", nargs=2, type=float, default=(0.0, 0.0), help="Areas in m^2 in the spray along and across the vessel."
+    "--spray",
+    nargs=2,
+    type=float,
+    default=(0.0, 0.0),
+    metavar="ALONG ACROSS",
+    help="Two areas in m^2: in the spray along and across the vessel.",
 )
 @text("--bag", "BAG", "Show the largest accelerations that the deck of this bag gave the units beside the Annex's.")
 @remap_option("Topic of an input of the bag, as for replay; may be repeated.")

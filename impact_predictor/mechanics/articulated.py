@@ -70,6 +70,11 @@ class WholeBody:
                 )
         self._plain = [(i, joint.idx_q) for i, joint in enumerate(moving) if joint.nq == 1]
         self._endless = [(i, joint.idx_q) for i, joint in enumerate(moving) if joint.nq == 2]
+        low, high = self._model.lowerPositionLimit, self._model.upperPositionLimit
+        self.limits = [
+            (i, float(low[place]), float(high[place])) for i, place in self._plain if low[place] < high[place]
+        ]
+        """Of each joint that has limits its place among `joints`, the lower and the upper one in rad or m."""
         # The base is at the origin and not turned, so that the model's world is its frame.
         self._q: NDArray[np.float64] = self._pinocchio.neutral(self._model)
         self.inertia: NDArray[np.float64] = np.zeros((self._model.nv, self._model.nv))

@@ -52,7 +52,7 @@ SWITCHES: Final = {
     "terrain": "feet.names feet.terrain",
     "friction of feet": "feet.names feet.friction",
     "restitution of feet": "feet.names feet.restitution",
-    "ball feet": "feet.names feet.radius",
+    "radius of feet": "feet.names feet.radius",
     "transforms": "tf.body_frame",
     "margins": "margins",
     "uncertainty": "uncertainty.samples",
@@ -442,13 +442,13 @@ def features_of(values: Mapping[str, Any]) -> tuple[Feature, ...]:
 
 
 def _feature(name: str, switches: list[str], values: Mapping[str, Any]) -> Feature:
-    """Whether a body has a feature, by the first parameter that leaves it out, or else by the first of all."""
+    """Whether a body has a feature, by the first parameter that leaves it out, or else by the last of all."""
     off = []
     for switch in switches:
         parameter = switch.lstrip("!")
         is_on = values[parameter] in ON[parameter] if parameter in ON else bool(values[parameter])
         off += [parameter] if is_on == switch.startswith("!") else []
-    parameter = (off or switches)[0].lstrip("!")
+    parameter = (off[0] if off else switches[-1]).lstrip("!")
     value = values[parameter]
     said = str(value).lower() if isinstance(value, bool) else f"{value:g}" if isinstance(value, int | float) else value
     if isinstance(value, tuple | list):

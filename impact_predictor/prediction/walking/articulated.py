@@ -37,6 +37,8 @@ class ArticulatedMachine:
         self.body.armature = self._drives.armature
         self.unknown: tuple[str, ...] = ()
         """Joints that were told last and that the model does not know."""
+        self.doubt = ""
+        """What speaks against the joint positions that were told last."""
         self._names: tuple[str, ...] | None = None
         self._order: list[int] = []
         self._status = Status.NO_GEOMETRY
@@ -59,6 +61,7 @@ class ArticulatedMachine:
         if not all(map(isfinite, (*angles, *rates))):
             return Status.NOT_FINITE
         body = self.body
+        self.doubt = self._beyond(angles)
         self._status = Status.ACCEPTED if body.place(np.array(angles), down) else Status.SINGULAR_INERTIA
         if self._status is not Status.ACCEPTED:
             return self._status
@@ -131,6 +134,16 @@ class ArticulatedMachine:
             jumps=tuple(jumps.tolist()),
             drives=opposed,
         )
+
+    def _beyond(self, angles: Sequence[float]) -> str:
+        """Which joint is further beyond its limits than these are apart, as one that is told in degrees."""
+        for i, low, high in self.body.limits:
+            if not 2.0 * low - high <= angles[i] <= 2.0 * high - low:
+                return (
+                    f"joint {self.joints[i]} is told at {angles[i]:.4g}, but robot.urdf lets it go from {low:.4g} to "
+                    f"{high:.4g}: compare the units (rad, m) and the zeros of the joints"
+                )
+        return ""
 
     def _know(self, names: tuple[str, ...]) -> bool:
         """Whether each joint of the model is once among the names; then their order is known."""

@@ -165,7 +165,7 @@ class FeetContacts(Contacts):
         return self._clock.delay
 
     def doubts(self) -> tuple[str, ...]:
-        found, delay = [self._schedule.doubt], self.delay
+        found, delay = [self._schedule.doubt, "" if self._articulated is None else self._articulated.doubt], self.delay
         if delay is not None and self._clock.is_wrong and not self._walking.find_delay:
             found.append(f"the feet are {delay}: set feet.delay to {delay.time:.4f}, or feet.find_delay to true")
         if self._forces.are_missing:

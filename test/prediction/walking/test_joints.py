@@ -95,6 +95,18 @@ def test_joints_that_the_model_does_not_know_are_left_out_whatever_they_are(frog
     assert frog.unknown == ("arm", "gripper", "arm")
 
 
+def test_joints_that_are_told_in_degrees_are_doubtful_until_they_are_told_in_rad(frog):
+    frog.geometry_of(Joints(7, NAMES, (0.3, -1.1), ()))
+    assert frog.doubt == ""  # hardly beyond a limit, as robots are
+    frog.geometry_of(Joints(8, NAMES, (1.7, -63.0), ()))
+    assert frog.doubt == (
+        "joint right_hip is told at -63, but robot.urdf lets it go from -1 to 1: compare the units (rad, m) and the "
+        "zeros of the joints"
+    )
+    frog.geometry_of(Joints(9, NAMES, (0.3, -1.1), ()))
+    assert frog.doubt == ""
+
+
 @pytest.mark.parametrize("velocities", [(), (nan, nan), (1.0, nan)])
 def test_velocities_that_a_driver_does_not_measure_are_none(frog, velocities):
     assert frog.geometry_of(Joints(7, NAMES, (0.3, -0.2), velocities)).velocities == ()
