@@ -370,7 +370,7 @@ def first_event(
             if (abs(then[3 * i]) <= _GAP * size and rate < 0.0) or rests:
                 reached = i
                 continue
-            rested = now[3 * i] <= _GAP * size and abs(now[3 * i + 1]) <= _LIGHT * speed
+            rested = now[3 * i] <= _GAP * size and 0.0 <= now[3 * i + 1] <= _LIGHT * speed
             s = crossing(now, then, i, h, dip, _THIN * size + max(0.0, -now[3 * i]) if rested else 0.0)
             if abs(s) < cut:
                 event, cut = i, abs(s)
