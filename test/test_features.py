@@ -195,6 +195,8 @@ def test_each_feature_is_switched_alone_and_its_reasons_name_a_parameter() -> No
     assert {feature.name for feature in features} == {*WITHOUT_AND_WITH, "articulated inertia", "drives"}
     legs = {**WALKER, "robot.urdf": "robot.urdf", "robot.frames": WALKER["feet.names"]}
     assert names_on(validate({**legs, "robot.drives": "held"})) - names_on(validate(legs)) == {"drives"}
+    (inertia,) = [one for one in features_of(validate(legs)) if one.name == "articulated inertia"]
+    assert inertia == ("articulated inertia", True, "robot.urdf is robot.urdf")
     for name, (without, those) in WITHOUT_AND_WITH.items():
         assert names_on(validate(those)) - names_on(validate(without)) == {name}
     for feature in features:

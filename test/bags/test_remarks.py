@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
-from math import cos, sin
+from math import cos, degrees, sin
 from pathlib import Path
 from typing import Any
 
@@ -257,3 +257,13 @@ def test_joints_that_are_missing_are_named(tmp_path: Path, modelled: Scene) -> N
         "400 of 400 messages on /joint_states are WRONG_JOINTS: it lacks left_knee, right_knee of robot.urdf, while "
         "robot.urdf does not know its left_elbow, right_elbow: tell every joint of the model by its name there"
     ) in replayed(tmp_path, modelled, renamed, steps_of_joints()).unpredictable
+
+
+@pytest.mark.extras
+def test_a_joint_in_degrees_is_named(tmp_path: Path, modelled: Scene) -> None:
+    def in_degrees(_: int, one: Any) -> Any:
+        return one._replace(positions=tuple(map(degrees, one.positions))) if isinstance(one, Joints) else one
+
+    found = replayed(tmp_path, modelled, in_degrees, steps_of_joints())
+    assert any("but robot.urdf lets it go from" in note for note in found.notes)
+    assert not any("but robot.urdf" in note for note in replayed(tmp_path, modelled, steps=steps_of_joints()).notes)

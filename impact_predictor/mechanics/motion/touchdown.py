@@ -79,11 +79,11 @@ def next_touchdown(
     it strikes at time 0 when it moves down, and after it has risen otherwise. A body at rest on its points, or
     balanced, has no touchdown. Never raises and never returns NaN.
     """
+    if stance is None:
+        return _fly(state, points, gravity, horizon)
     # Numbers of numpy would compare to its booleans, with which nothing can be counted.
     rho_squared, friction, horizon, gravity = float(rho_squared), float(friction), float(horizon), _floats(gravity)
     state, points = PlanarState(*map(float, state)), tuple([_floats(point) for point in points])
-    if stance is None:
-        return _fly(state, points, gravity, horizon)
     foot_x, foot_y = points[stance]
     arms: list[_Arm] = []
     for index, (x, y) in enumerate(points):
