@@ -256,6 +256,23 @@ def test_an_edge_that_is_pulled_along_itself_touches_down_alike_whichever_way_it
         assert twist == pytest.approx(found[0][2], abs=TWIST)
 
 
+def test_an_edge_that_hardly_leans_and_lies_nearly_along_an_axis_touches_down_as_one_that_lies_across() -> None:
+    draw, pull = random.Random(1), np.array([-0.9, 2.2, -8.8])
+    tall = [(x, y, 1.5 * z) for x, y, z in CUBE]
+    inertia = *(EDGE * EDGE * part / 12.0 for part in (3.25, 3.25, 2.0)), 0.0, 0.0, 0.0
+    for _ in range(60):
+        lean, way, tilt = 10.0 ** draw.uniform(-8.0, -3.0), 10.0 ** draw.uniform(-4.0, -1.0), draw.uniform(0.003, 0.1)
+        pose, rate, found = Rotation.from_euler("xyz", [-tilt, lean, way]), draw.uniform(0.0, 0.5), []
+        for turn in (Rotation.from_rotvec([0.0, 0.0, 0.7]), Rotation.identity()):
+            lies = turn * pose
+            position, spin = -lies.apply([0.0, *tall[2][1:]]), lies.apply([rate, 0.0, 0.0])
+            state = SpatialState(position, lies.as_quat(), np.cross(spin, position), spin)
+            found.append(fall(state, inertia, tall, (2, 6), 0.7, Pull(gravity=tuple(turn.apply(pull)))))
+        assert found[0].point in (0, 4)
+        assert found[1].point in (0, 4)
+        assert found[1].time == pytest.approx(found[0].time, abs=TIME)
+
+
 def test_a_body_that_lies_on_a_face_has_no_touchdown_and_what_it_takes_is_short() -> None:
     for velocity, spin in (((0.0, 0.0, 0.0), 0.0), ((0.5, 0.2, 0.0), 2.0)):
         state = SpatialState((0.0, 0.0, 0.5 * EDGE), FLAT, velocity, (0.0, 0.0, spin))

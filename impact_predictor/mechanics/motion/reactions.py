@@ -19,7 +19,7 @@ of a creeping point is blended with its direction before.
 end their number; label (n): OPEN, STICKS, SLIPS or CREEPS; toward (2 n): direction of a slip; forces (3 n), kept from
 one solution to the next; arms (3 n) of points that stand; blocks (12 n): their W and its inverse, as xx yy zz xy xz yz;
 frame: the body's axes as columns of a matrix (9), and the inverse inertia along the support's axes (6); rows
-(9 n n + 3 n) to solve equations in.
+(9 n n + 3 n) to solve equations in, and the order (3 n) in which they are solved.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from ..compiled import Count, Floats, Ints
 
     Model = tuple[Floats, Floats, Floats, Floats, Floats]
-    Stance = tuple[Ints, Ints, Floats, Floats, Floats, Floats, Floats, Floats]
+    Stance = tuple[Ints, Ints, Floats, Floats, Floats, Floats, Floats, Floats, Ints]
 
 OPEN: Final = 0
 STICKS: Final = 1
@@ -234,12 +234,13 @@ def _hold_all(
 ) -> int:
     """As `rates` without cones for two points or more, from the acceleration with the forces before.
 
-    The linear equations of all points are solved by elimination. Its pivots are positive, zero where points share a
-    load in many ways, which then stays as it was, and negative where a slip jams.
+    The linear equations of all points are solved by elimination, the largest pivot first: after a small one rounding
+    would hide that others are zero. Pivots are positive, zero where points share a load in many ways, which then stays
+    as it was, and negative where a slip jams.
     """
     scale = model[4]
     held, label, forces, arms = stance[0], stance[1], stance[3], stance[4]
-    frame, rows = stance[6], stance[7]
+    frame, rows, order = stance[6], stance[7], stance[8]
     count, size = held[len(label)], 0
     for k in range(count):
         size += 3 if label[held[k]] == STICKS else 1
@@ -290,24 +291,35 @@ def _hold_all(
         rows[row * width + size] = -(az + alx * ry - aly * rx + wz * along - rz * square)
         row += 1
     for p in range(size):
-        pivot, whole = rows[p * width + p], 1.0
-        if abs(pivot) <= _SHARED * whole:
-            rows[p * width + p] = 0.0
+        order[p] = p
+    for p in range(size):
+        largest = p
+        for q in range(p + 1, size):
+            if rows[order[q] * width + order[q]] > rows[order[largest] * width + order[largest]]:
+                largest = q
+        row = order[largest]
+        order[largest], order[p] = order[p], row
+        pivot = rows[row * width + row]
+        if abs(pivot) <= _SHARED:
+            rows[row * width + row] = 0.0
             continue
         if pivot < 0.0:
             forget(stance)
             fill(y, out, at, ax, ay, az, alx, aly, alz)
             return held[0]
         for q in range(p + 1, size):
-            factor = rows[q * width + p] / pivot
+            other = order[q]
+            factor = rows[other * width + row] / pivot
             if factor != 0.0:
-                for c in range(p + 1, width):
-                    rows[q * width + c] -= factor * rows[p * width + c]
+                for c in range(p + 1, size):
+                    rows[other * width + order[c]] -= factor * rows[row * width + order[c]]
+                rows[other * width + size] -= factor * rows[row * width + size]
     for p in range(size - 1, -1, -1):
-        value = rows[p * width + size]
+        row = order[p]
+        pivot, value = rows[row * width + row], rows[row * width + size]
         for c in range(p + 1, size):
-            value -= rows[p * width + c] * rows[c * width + size]
-        rows[p * width + size] = 0.0 if rows[p * width + p] == 0.0 else value / rows[p * width + p]
+            value -= rows[row * width + order[c]] * rows[order[c] * width + size]
+        rows[row * width + size] = 0.0 if pivot == 0.0 else value / pivot
     row, jam = 0, -1
     for k in range(count):
         i = held[k]

@@ -96,7 +96,7 @@ def fall(
     numbers += [*inertia, *feels.gravity, *feels.growth, *feels.spin, *feels.turning, *frictions]
     for arm in arms:
         numbers += arm
-    marks: Any = np.zeros(2 * n + 1, np.int64)
+    marks: Any = np.zeros(5 * n + 1, np.int64)
     told: Any = np.empty(OUTPUT + 2 * n)
     for i in standing:
         marks[i] = 1

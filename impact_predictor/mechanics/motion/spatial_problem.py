@@ -2,7 +2,7 @@
 
 Written as `reactions` is. Numbers of a problem: horizon; place, quaternion, velocity and angular velocity; the
 inertia over the mass as xx yy zz xy xz yz; gravity, its growth, angular velocity and acceleration of the frame;
-friction (n); points (3 n). `marks` (2 n + 1) of points that stand are not 0. An answer: time, state, and of each point
+friction (n); points (3 n). `marks` (5 n + 1) of points that stand are not 0. An answer: time, state, and of each point
 its gap and its rate.
 """
 
@@ -39,9 +39,9 @@ def prepare(n: Count, numbers: Floats, marks: Ints, work: Floats) -> tuple[bool,
     o += 5 * n
     toward, forces, arms = work[o : o + 2 * n], work[o + 2 * n : o + 5 * n], work[o + 5 * n : o + 8 * n]
     blocks, rows = work[o + 8 * n : o + 20 * n], work[o + 20 * n : o + 23 * n + 9 * n * n]
-    label, held = marks[0:n], marks[n : 2 * n + 1]
+    label, held, order = marks[0:n], marks[n : 2 * n + 1], marks[2 * n + 1 : 5 * n + 1]
     model = (points, body, pull, friction, scale)
-    stance = (held, label, toward, forces, arms, blocks, frame, rows)
+    stance = (held, label, toward, forces, arms, blocks, frame, rows, order)
     for i in range(INPUT + 4 * n):
         if not -_LARGEST <= numbers[i] <= _LARGEST:
             return False, y, offsets, model, stance
