@@ -425,6 +425,26 @@ def test_of_bodies_that_nearly_lie_flat_none_takes_more_than_600_steps(steps: li
     assert most < 600
 
 
+# The times are those of thousands of steps, without the limit on their number.
+@pytest.mark.parametrize(
+    ("across", "lean", "spin", "slip", "corner", "time"),
+    [
+        (-0.0011, 0.013, -0.9, (-0.02, 0.01, 0.0), 6, 0.007264227363041287),
+        (0.0017, 0.005, -1.9, (-0.01, -0.01, 0.0), 4, 0.008874167087373732),
+        (-0.0017, 0.014, -0.2, (-0.03, 0.01, 0.0), 6, 0.008817290822902338),
+    ],
+)
+def test_a_slip_whose_end_would_take_thousands_of_steps_is_ended_and_the_touchdown_after_it_told(
+    across: float, lean: float, spin: float, slip: tuple[float, ...], corner: int, time: float
+) -> None:
+    pose = Rotation.from_euler("xyz", [across, lean, 0.0])
+    arm, w = pose.apply(CUBE[corner]), np.array([0.0, 0.0, spin])
+    start = SpatialState((0.0, 0.0, -arm[2]), pose.as_quat(), -np.cross(w, arm) + slip, w)
+    found = fall(start, ALIKE, CUBE, (corner,), 0.9, horizon=0.3)
+    assert found.point == {4: 6, 6: 4}[corner]
+    assert found.time == pytest.approx(time, abs=TIME)
+
+
 @pytest.mark.parametrize("plain", [False, True], ids=["compiled", "plain"])
 def test_odd_numbers_have_no_touchdown_and_raise_nothing(plain: bool, monkeypatch: pytest.MonkeyPatch) -> None:
     if plain:

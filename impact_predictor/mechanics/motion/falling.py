@@ -11,7 +11,7 @@ from math import sqrt
 from typing import TYPE_CHECKING, Final
 
 from .reactions import CREEPS, OPEN, SLIPS, STICKS, derive, hold, locate, rates
-from .stances import NONE, ROUNDING, change, creep, head, margins, near, settle, stand, stays, steady, stop, veers
+from .stances import NONE, ROUNDING, SLOW, change, creep, head, margins, near, settle, stand, stays, steady, stop, veers
 
 if TYPE_CHECKING:
     from ..compiled import Count, Floats
@@ -44,7 +44,9 @@ _TURN: Final = 0.8
 """rad in one step at most: a gap is a polynomial of degree 3 over it, up to `_BEND`."""
 _BEND: Final = 1.0 / 192.0
 """Twice the error of such a polynomial, relative to the size and to the fourth power of the turn."""
-_MAX_STEPS: Final = 300
+_MANY: Final = 300
+"""Steps, after which slips that creep end: else some would take thousands."""
+_MAX_STEPS: Final = 400
 _MAX_CUTS: Final = 30
 """More than the secant needs to find the events of a step."""
 _STUCK: Final = 12
@@ -190,7 +192,10 @@ def follow(
     if struck >= 0:
         return 0.0, struck
     again, h = True, (0.3 if held[n] else 1.0) * sqrt(size / weight)
-    for _ in range(_MAX_STEPS):
+    for taken in range(_MAX_STEPS):
+        if taken == _MANY:
+            stop(y, model, stance, SLOW)
+            again = True
         if events == most:
             # Points that lift and rest in turns are held for a while: what would lift or begin to slip does not.
             since, moment, events = time, moment * _LONGER, events + 1

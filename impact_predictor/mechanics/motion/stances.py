@@ -19,10 +19,10 @@ _SLIP: Final = 1e-7
 """How near to its zero an event is found, relative to the scales. Forces are continuous there."""
 _ALIKE: Final = 10.0
 """Factor on these within which the events of several points are one."""
-_CREEPS: Final = 1e-3
-"""Relative to the scale of speeds: a slower slip creeps."""
 _VEERS: Final = 1e-4
 """Error in a step, relative to the scale of speeds, by the direction of a creeping point's friction, which lags."""
+SLOW: Final = 1e-3
+"""Relative to the scale of speeds: a slower slip creeps."""
 NONE: Final = 1e-8
 """Relative to the scale of speeds: a slower slip is none."""
 ROUNDING: Final = 1e-10
@@ -118,14 +118,14 @@ def head(y: Floats, i: Count, model: Model, stance: Stance) -> float:
     slip = sqrt(sx * sx + sy * sy)
     part: float = slip / model[4][1]
     if label[i] == CREEPS:
-        if part > 2.0 * _CREEPS:
+        if part > 2.0 * SLOW:
             label[i] = SLIPS
         elif friction[i] > 0.0:
             sx, sy = drag(y, i, model, stance)
             toward[2 * i], toward[2 * i + 1] = -sx / friction[i], -sy / friction[i]
     if label[i] == SLIPS and part > NONE:
         toward[2 * i], toward[2 * i + 1] = sx / slip, sy / slip
-        if part < _CREEPS:
+        if part < SLOW:
             label[i] = CREEPS
     return part
 
@@ -171,7 +171,7 @@ def change(event: Count, y: Floats, before: Floats, model: Model, stance: Stance
     held, label, toward, forces = stance[0], stance[1], stance[2], stance[3]
     kind, which, count = label[event // 2], event % 2, held[len(label)]
     if which == 1 and kind >= SLIPS:
-        stop(y, model, stance, _CREEPS if head(y, event // 2, model, stance) <= _CREEPS else 0.0)
+        stop(y, model, stance, SLOW if head(y, event // 2, model, stance) <= SLOW else 0.0)
         return
     for slot in range(count - 1, -1, -1):
         i = held[slot]
