@@ -38,6 +38,9 @@ def test_kinds_are_what_they_are_called():
     made = {kind: problems_of(kind, np.random.default_rng(1), COUNT) for kind in KINDS}
     assert [kind for kind, each in made.items() if each.body.old is None] == ["one-point"]
     assert (normal_velocity(made["both"].body.old, made["both"].twist) < 0.0).all()
+    for edge in (made["cylinder"].body.old, made["cylinder"].body.new):
+        along, across = edge.normal  # to the axis
+        assert np.stack((edge.x, edge.y)) == pytest.approx(-np.hypot(edge.x, edge.y) * (along, across))
     deck = made["deck"].body
     rise, run = deck.new.y - deck.old.y, deck.new.x - deck.old.x
     stretch = run * (deck.new.velocity[0] - deck.old.velocity[0]) + rise * (deck.new.velocity[1] - deck.old.velocity[1])

@@ -82,6 +82,7 @@ def assert_agrees(found: SpatialFall, point: int, time: float, state: Any) -> No
     assert EDGE * ours[10:] == pytest.approx(EDGE * state[10:], abs=TWIST * speed)
     assert min(found.gaps) > -1e-8 * EDGE or found.standing
     assert found.gaps[found.point] == pytest.approx(0.0, abs=1e-12)
+    assert [found.gaps[i] for i in found.standing] == pytest.approx([0.0] * len(found.standing), abs=EDGE * TIME)
 
 
 def test_a_free_body_alike_about_all_axes_keeps_its_twist_but_for_gravity() -> None:
