@@ -214,6 +214,12 @@ def test_a_contact_that_leaves_faster_lifts_more_likely() -> None:
         found.append((rate, contact.lift_probability))
     assert found == sorted(found)
     assert found[0][1] < 0.5 < found[-1][1]
+    # The law is right to a part of the speed with which all moves before the impact.
+    scene, linear, angular = placed.scene(), *touchdown.before_6d
+    arm = np.linalg.norm(np.subtract(scene.points[contact.point], scene.center_of_mass))
+    speed = float(np.linalg.norm(linear) + np.linalg.norm(angular) * arm)
+    margin = NormalDist(rate - SLOW * float(np.linalg.norm(PULL.gravity)), scene.law_deviation * speed)
+    assert contact.lift_probability == pytest.approx(1.0 - margin.cdf(0.0), rel=1e-9)
 
 
 @pytest.mark.parametrize("first", [(-1.0, 0.0), (1e30, 0.0), (1.0, 0.5)], ids=["negative", "huge", "askew"])

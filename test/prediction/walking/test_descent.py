@@ -37,6 +37,17 @@ def test_the_filter_follows_a_cubic_exactly() -> None:
     assert velocity[2] == pytest.approx(-0.5, abs=0.01)
 
 
+def test_a_gap_that_is_far_off_is_taken_as_one_that_is_off_by_three_deviations() -> None:
+    filtered, off = PointFilter(frame(-0.15, (0.1,)), EXACT), 1e-4
+    for k in range(1, 30):
+        filtered.add(frame(-0.15 + 2.5e-3 * k, (0.1,)), EXACT)
+    (expected, *_), *_ = filtered.rows
+    filtered.add(PointFrame(10**9 - 75 * MS, expected + off, None, (0.0, 0.0, 0.1), None), EXACT)
+    assert filtered.broke
+    # With a deviation of off / 3 in all, the part of the noise in it is what is not taken.
+    assert filtered.rows[0][0] == pytest.approx(expected + off - 9.0 * EXACT.gap**2 / off, abs=1e-12)
+
+
 def test_the_part_of_announced_landings_that_came_begins_at_nine_in_ten_and_becomes_what_was_seen() -> None:
     prior = LandingPrior()
     assert prior.came_true == 0.9
