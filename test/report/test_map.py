@@ -265,7 +265,10 @@ def test_the_sketch_of_a_cylinder_is_a_circle_about_its_mass_centre_through_the_
     drawn: list[Figure] = []
     monkeypatch.setattr(Figure, "savefig", lambda figure, file, **_: drawn.append(figure) or file.write_bytes(b""))
     write_map(tmp_path / "map.png", a_map("cylinder", cells=2))
-    _, sketch, _ = drawn[0].axes
+    axes, sketch, side = drawn[0].axes
+    whole, above, below = (one.get_position() for one in (axes, sketch, side))
+    assert whole.x1 < min(above.x0, below.x0)
+    assert below.y1 < above.y0
     (outline,) = sketch.patches
     assert isinstance(outline, Polygon)
     center, edge = (np.ravel(line.get_xydata()) for line in sketch.lines[:2])

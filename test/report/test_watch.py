@@ -129,6 +129,7 @@ def test_the_page_has_deck_forecast_levels_margins_events_and_statistics() -> No
     assert "felt along" not in shown  # there is none
     assert shown["WARN"]["base"] == [4.0, 20.0]
     assert shown["event"]["x"] == [10.0, 50.0]
+    assert shown["forecast 5 s before"]["x"] == pytest.approx(5.0 + np.arange(200) * STEP / S)
     assert max(shown["roll, port up"]["y"]) == pytest.approx(np.degrees(0.1), abs=0.05)
     assert drawn["layout"]["xaxis"]["anchor"] == "y4"
     near, statistics, skill = page.tables["watch"]

@@ -110,6 +110,16 @@ def test_it_goes_on_where_a_span_ends() -> None:
         assert ends == pytest.approx(begins, abs=1e-5)
 
 
+@pytest.mark.parametrize("yaw", [0.0, np.pi])
+def test_how_far_it_is_tilted_is_told_whichever_way_it_lies(yaw: float) -> None:
+    unit = unit_of("box", box(yaw=yaw))
+    tilted = unit._replace(start=standing(unit.body, 0.03))
+    span = next(follow_compliant(tilted, planar_deck(harmonic_support([Wave(1e-6, 1.0)])), 0.2))
+    assert span.state(np.zeros(1)).angle == pytest.approx([0.03])
+    turns = span.poses(np.linspace(0.0, span.time, 999)).orientation
+    assert np.square(turns).sum(axis=1) == pytest.approx(1.0, abs=1e-14)  # between steps of the motion, too
+
+
 def test_a_toppled_unit_ends_there() -> None:
     tall = box(points=tuple((x, y, -2.0) for x in (-0.7, 0.7) for y in (-0.2, 0.2)))
     *_, last = follow_compliant(unit_of("tall", tall), a_deck(), 20.0)
