@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import pytest
 from command_line import answer_of, invoke
@@ -11,11 +12,12 @@ from scipy.spatial.transform import Rotation
 from tossed_bodies import CENTER, GIVEN, TRUE, tosses
 
 from impact_predictor.bags.write import BagWriter
+from impact_predictor.errors import InputError
 from impact_predictor.parameters.file import read_values
 from impact_predictor.prediction.types import Geometry, Sample
 from impact_predictor.ros.messages import ODOMETRY, POLYGON, encode_odometry, encode_polygon
 
-STILL = (0.0, 0.0, 0.0)
+STILL, FLAT = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0)
 SCENE = f"""# A box in the hall.
 /**:
   ros__parameters:
@@ -89,6 +91,30 @@ def test_the_tables_tell_intervals_what_is_held_out_and_what_cannot_be_told(fold
         assert words in said
     assert "inertia (kg m^2)" in said
     assert "ixx" not in said
+
+
+@pytest.mark.parametrize(
+    ("inertia", "tensor", "moments"),
+    [("0.1", "scene", 1), ("0.1, 0.1, 0.2, 0.0, 0.0, 0.0", "scene", 6), ("0.1", "principal", 3)],
+)
+def test_as_many_moments_are_fitted_as_the_scene_has_unless_told_otherwise(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, inertia: str, tensor: str, moments: int
+) -> None:
+    asked: list[int] = []
+
+    def noted(scene: Any, motions: Any, moments: int, *others: Any) -> None:
+        asked.append(moments)
+        raise InputError("no more is asked for")
+
+    monkeypatch.setattr("impact_predictor.calibration.identify.identify", noted)
+    given = f"[{GIVEN[0]}, {GIVEN[1]}, {GIVEN[2]}, 0.0, 0.0, 0.0]"
+    (tmp_path / "scene.yaml").write_text(SCENE.replace(given, f"[{inertia}]"))
+    with BagWriter(tmp_path / "none.mcap") as writer:
+        points = (0.1, 0.0, 0.0), (-0.1, 0.0, 0.0)
+        writer.write("/contact_geometry", POLYGON, 0, encode_polygon(Geometry(0, "box", points)))
+        writer.write("/odom", ODOMETRY, 0, encode_odometry(Sample(0, "world", "box", STILL, FLAT, STILL, STILL)))
+    run(str(tmp_path / "none.mcap"), "--params", str(tmp_path / "scene.yaml"), "--tensor", tensor)
+    assert asked == [moments]
 
 
 def test_too_few_impacts_end_in_one_sentence(tmp_path: Path) -> None:

@@ -2,6 +2,7 @@
 
 import os
 import struct
+import time
 from itertools import islice
 from pathlib import Path
 
@@ -58,6 +59,22 @@ def sailed(bag, **more):
 def said_of_units(arrays):
     """What a sequence of diagnostics says about units, and not about the node."""
     return [one for data in arrays for one in decode_diagnostic_array(data) if one.name.startswith(UNIT)]
+
+
+def test_a_deck_that_nobody_publishes_is_named_beside_what_stands_on_it():
+    import rclpy
+
+    from impact_predictor.ros.predictor_node import PredictorNode
+
+    rclpy.init(args=["--ros-args", "--params-file", str(ROOT / "config/deck_crate.yaml")])
+    try:
+        node = PredictorNode()
+        node._on_second()
+        said, _ = node._reporter.diagnostics.inputs.flaw(time.perf_counter())
+        node.destroy_node()
+    finally:
+        rclpy.shutdown()
+    assert said == "no sample yet on support/odom and odom: nobody publishes there"
 
 
 @pytest.mark.slow

@@ -2,7 +2,7 @@ import pytest
 
 from impact_predictor.bags.read import BagMessage
 from impact_predictor.ros.messages import ODOMETRY, POLYGON
-from impact_predictor.ros.player import GEOMETRY_AHEAD, LONGEST_GAP, SHORTENED_GAP, _publish_all, timed
+from impact_predictor.ros.player import GEOMETRY_AHEAD, LONGEST_GAP, SHORTENED_GAP, _await_others, _publish_all, timed
 
 SECOND = 1_000_000_000
 
@@ -61,6 +61,30 @@ def test_contact_points_are_given_time_where_they_come_now_and_then_but_not_thos
     # More time only before what follows the first points, and the first after a pause.
     assert before == [1, 9]
     assert all(listening.waits[k] > 0.5 * GEOMETRY_AHEAD for k in before)
+
+
+class Lonely(Listening):
+    """A publisher without subscribers on a node that knows of no other, and a stop that is asked for."""
+
+    topic_name = "/odom"
+
+    def get_subscription_count(self):
+        return 0
+
+    def count_publishers(self, topic):
+        return 0
+
+    def wait(self, seconds):
+        super().wait(seconds)
+        return True
+
+
+def test_nobody_is_waited_for_any_more_once_the_player_is_to_stop():
+    for publishers, recorded in (([Lonely()], ()), ([], ("~/mode",))):
+        stop = Lonely()
+        assert _await_others(stop, publishers, recorded, stop) is False
+        assert len(stop.waits) == 1
+    assert _await_others(stop, [], (), stop) is True
 
 
 def test_how_long_messages_are_kept_may_be_overridden_where_a_publisher_keeps_them():
