@@ -24,6 +24,7 @@ from typing import Any, Final, NamedTuple
 
 from ... import __version__
 from ...bags.replay import replay
+from ...native import form
 from ...prediction.scene import read_scenes
 from ...resources import find
 
@@ -50,8 +51,8 @@ SPAN: Final = 2e-4
 """s of calls that are timed together, far above the resolution of the clock."""
 
 TIMING: Final = (
-    "CPU time of one prediction, of three runs the quickest: in plain Python unless the method says otherwise, but the "
-    "law in three dimensions is compiled where numba is installed."
+    "CPU time of one prediction, of three runs the quickest. The program ran {form}. The law in three dimensions is "
+    "compiled where numba is installed."
 )
 
 
@@ -120,7 +121,7 @@ def report(part: float, command: str, tell: Callable[[int], None] = lambda done:
     found = {name: conclusions(rows, name, question.USED) for name, question in asked.items()}
     drawn = [scene for question in asked.values() for scene in question.SCENES]
     return {
-        "made": made | {"command": command, "timing": TIMING},
+        "made": made | {"command": command, "timing": TIMING.format(form=form())},
         "node": {question: used for question, (used, _) in found.items()},
         "scenes": [scene._asdict() for scene in (*drawn, CUBE)],
         "rows": rows,
