@@ -116,4 +116,5 @@ def test_the_json_has_skill_kinds_components_lifts_and_reasons() -> None:
     assert answer["kinds"]["edge>face"]["planar"]["median"] == pytest.approx(0.4)
     assert answer["components"] == {}  # what does not vary has none
     assert answer["lifts"]["old"]["lifted"] == {"told": 1, "not_told": 1}
+    assert answer["lifts"]["old"]["stayed"] == {"told": 0, "not_told": 1}
     assert skill_as_json([], {}) == {}

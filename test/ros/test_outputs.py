@@ -29,6 +29,7 @@ from impact_predictor.prediction.types import (
     Uncertainty,
 )
 from impact_predictor.prediction.watch.watch import Level, Report
+from impact_predictor.ros.cdr import seconds_and_rest
 from impact_predictor.ros.messages import (
     DIAGNOSTIC_ARRAY,
     ODOMETRY,
@@ -373,6 +374,11 @@ def test_rclpy_reads_what_is_written_and_writes_what_is_read() -> None:
             assert padded(serialize(TYPESTORE.deserialize_cdr(again, type_name), type_name)) == data
             if type_name == DIAGNOSTIC_ARRAY:
                 assert decode_diagnostic_array(again) == decode_diagnostic_array(data)
+
+
+@pytest.mark.parametrize(("second", "told"), [(-(2**31) - 5, -(2**31)), (2**31 - 1, 2**31 - 1), (2**31, 2**31 - 1)])
+def test_a_time_beyond_the_range_of_a_message_is_told_as_the_end_of_it(second: int, told: int) -> None:
+    assert seconds_and_rest(second * 10**9 + 7) == (told, 7)
 
 
 def test_reports_on_several_units_are_one_array_as_rosbags_writes_it() -> None:

@@ -47,6 +47,10 @@ def test_one_body_stands_on_the_topics_of_the_node_and_several_on_their_own(tmp_
     assert times == sorted(times)
 
 
+def test_a_rod_may_stand_on_its_very_ends() -> None:
+    assert a_rod(0.2).run.impacts
+
+
 def test_the_states_are_those_of_the_motion_in_space_at_the_rate(tmp_path: Path) -> None:
     slope = radians(5.0)
     run = a_rod(slope=slope).run

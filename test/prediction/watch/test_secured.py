@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from scipy.optimize import linprog
 
+from impact_predictor.prediction.vectors import add
 from impact_predictor.prediction.watch.onset import FULL, Onset, OnsetMargins, motions
 from impact_predictor.prediction.watch.stance import Holder, StandingBody, WindLoad, edges_of, outline
 
@@ -150,6 +151,19 @@ def test_a_chock_takes_what_wind_and_deck_push_at_its_height() -> None:
     wind = WindLoad((0.0, 800.0), ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0)), (0.0, 0.0, 1.5))
     moment = HEIGHT * MASS * 2.0 + 1.5 * 800.0 - 0.3 * (MASS * 2.0 + 800.0)
     assert tip([chock(1.0, 0.3)], 0.0, 2.0, -G, wind=wind) == pytest.approx(moment / (HALF * MASS * G))
+
+
+def test_a_crate_with_wind_and_a_chock_has_the_same_margins_wherever_its_support_is_told_from() -> None:
+    wind, shift = WindLoad((0.0, 800.0), ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0)), (0.0, 0.0, 1.5)), (0.3, -0.2, 0.7)
+    held = chock(1.0, 0.3)
+    moved = {
+        "center": add(CRATE.center, shift),
+        "edges": tuple([edge._replace(point=add(edge.point, shift)) for edge in EDGES]),
+        "wind": wind._replace(center=add(wind.center, shift)),
+    }
+    here = [held._replace(point=add(held.point, shift))]
+    assert tip(here, 0.0, 2.0, -G, **moved) == pytest.approx(tip([held], 0.0, 2.0, -G, wind=wind))
+    assert slide(here, 0.0, 2.0, -G, **moved) == pytest.approx(slide([held], 0.0, 2.0, -G, wind=wind))
 
 
 def test_bodies_beside_a_lashed_one_keep_their_margins_and_many_times_are_as_one() -> None:
