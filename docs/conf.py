@@ -80,7 +80,7 @@ def messages() -> str:
 def fill(app: Any, page: str, source: list[str]) -> None:
     """Put tables of parameters and messages where a page wants them; name by its path what is no page of the site."""
     table = ["| parameter | default | | may be |", "| --- | --- | --- | --- |", *map(row, PARAMETERS.values())]
-    named = re.sub(r"\[([^\]]+)\]\(\.\./([\w/.]+)\)", r"\1 (`\2`)", source[0])
+    named = re.sub(r"\[([^\]]+)\]\(\.\./([\w/.-]+)\)", r"\1 (`\2`)", source[0])
     named = named.replace("<!-- parameters -->", "\n".join(table))
     for topic in TABLES:
         named = named.replace(f"<!-- keys of {topic} -->", keys_of(topic))

@@ -77,6 +77,8 @@ def test_every_link_of_a_page_leads_somewhere(page: Path) -> None:
     for target, anchor in LINK.findall(CODE.sub("", page.read_text())):
         if target.startswith(("http", "mailto")):
             continue
+        if page.parent.name == "docs" and target.startswith("../"):  # the site only names them: `fill` in docs/conf.py
+            assert not anchor, target
         file = page.parent / target if target else page
         assert file.exists(), target
         if anchor:
