@@ -41,7 +41,9 @@ class Latency:
             late = latency / NANOSECONDS
             if late > RECORDED and not self.is_simulated:
                 day = time.strftime("%Y-%m-%d %H:%M", time.gmtime(stamp // NANOSECONDS))
-                self.note = f"stamps are of {day} UTC, as those of a recording"
+                self.note = (
+                    f"stamps are of {day} UTC, as those of a recording; if none is played set both clocks by one"
+                )
                 continue
             self.seconds = late
             if abs(late) > (horizon := self._horizon(name)):

@@ -188,10 +188,8 @@ def test_a_recording_that_is_played_is_no_warning_but_its_day_is_told():
     diagnostics = Diagnostics("impact_predictor", 0.0, horizon=lambda _: 0.25)
     accept(diagnostics, 0.9, stamp=1_500_000_000 * SECOND, latency=200_000_000 * SECOND)
     diagnostics.second_over(1.0)
-    assert (diagnostics.level, diagnostics.message) == (
-        OK,
-        "predicting; stamps are of 2017-07-14 02:40 UTC, as those of a recording",
-    )
+    recorded = "stamps are of 2017-07-14 02:40 UTC, as those of a recording; if none is played set both clocks by one"
+    assert (diagnostics.level, diagnostics.message) == (OK, f"predicting; {recorded}")
     assert "samples.latency" not in report(diagnostics).values
 
 
