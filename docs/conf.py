@@ -10,6 +10,7 @@ from typing import Any
 import impact_predictor
 from impact_predictor.parameters.table import PARAMETERS
 from impact_predictor.parameters.types import Parameter, allowed
+from impact_predictor.prediction.checks import REMEDIES
 from impact_predictor.ros.messages.fields import TABLES
 from impact_predictor.ros.messages.kinds import Field
 
@@ -77,11 +78,20 @@ def messages() -> str:
     return "\n\n".join([f"### {file.stem}\n\n```\n{file.read_text(encoding='utf-8')}```" for file in files])
 
 
+def statuses() -> str:
+    """The table of why a message is refused, and what to do."""
+    rows = ["| | status | what is wrong | what to do |", "| --- | --- | --- | --- |"]
+    for status, remedy in sorted(REMEDIES.items()):
+        wrong, _, to_do = remedy.partition("; ")
+        rows.append(f"| {status:d} | {status.name} | {wrong} | {to_do} |")
+    return "\n".join(rows)
+
+
 def fill(app: Any, page: str, source: list[str]) -> None:
-    """Put tables of parameters and messages where a page wants them; name by its path what is no page of the site."""
+    """Put tables where a page wants them; name by its path what is no page of the site."""
     table = ["| parameter | default | | may be |", "| --- | --- | --- | --- |", *map(row, PARAMETERS.values())]
     named = re.sub(r"\[([^\]]+)\]\(\.\./([\w/.-]+)\)", r"\1 (`\2`)", source[0])
-    named = named.replace("<!-- parameters -->", "\n".join(table))
+    named = named.replace("<!-- parameters -->", "\n".join(table)).replace("<!-- statuses -->", statuses())
     for topic in TABLES:
         named = named.replace(f"<!-- keys of {topic} -->", keys_of(topic))
     source[0] = named.replace("<!-- messages -->", messages())

@@ -52,6 +52,7 @@ def _rounded(number: re.Match[str]) -> str:
     ("page", "said"),
     [
         ("parameters", ["contact.friction", "contact.merge 0.0015"]),
+        ("node", ["WRONG_JOINTS a joint of robot.urdf is missing", "NO_TRANSFORM"]),
         ("prediction", ["lead_time", "before.vx, .vy", "late s after the plan"]),
         ("api", ["solve_impact(body", "Input that no body can have gives Flag.INVALID_INPUT"]),
     ],
