@@ -10,7 +10,8 @@ from pathlib import Path
 import pytest
 from command_line import invoke, refusal_of
 
-from impact_predictor.commands.progress import COMPILING, compiling_is_said
+from impact_predictor.commands.progress import compiling_is_said
+from impact_predictor.mechanics.compiled import COMPILING
 
 BODIES = ["plate", "rod", "cylinder"]
 DOCS = Path(__file__).parents[1] / "docs"
@@ -118,7 +119,7 @@ def test_the_first_compilation_is_said_once(capsys: pytest.CaptureFixture[str]) 
     twice = numba.njit(lambda value: 2.0 * value)
     with compiling_is_said():
         assert twice(1.0) + twice(1) == 4.0
-    assert capsys.readouterr().err == f"{COMPILING}\n"
+    assert capsys.readouterr().err == f"note: {COMPILING}\n"
     with compiling_is_said():
         assert twice(2.0) == 4.0
     assert capsys.readouterr().err == ""

@@ -19,7 +19,6 @@ if TYPE_CHECKING:
 PATIENCE: Final = 1.0
 """Seconds of work before a bar appears."""
 
-COMPILING: Final = "note: compiling the impact laws, once for this machine (about 15 s)"
 NAMED: Final = 3
 """Unfinished bags that are named; of more the number is given."""
 
@@ -78,7 +77,7 @@ def progress(label: str, unit: str = "samples", total: int | None = None, note: 
 
 def compiling_is_said() -> AbstractContextManager[None]:
     """Say so when numba compiles meanwhile, instead of taking what it compiled before."""
-    return told_of_compiling(lambda: click.echo(COMPILING, err=True))
+    return told_of_compiling(lambda said: click.echo(f"note: {said}", err=True))
 
 
 def say_unfinished(outputs: Sequence[Path | None], scheduler: str | None = None) -> None:

@@ -9,7 +9,7 @@ from functools import cache
 from hashlib import sha256
 from inspect import getmembers, getsource, isfunction, signature
 from types import ModuleType
-from typing import TYPE_CHECKING, Any, TypeVar, cast
+from typing import TYPE_CHECKING, Any, Final, TypeVar, cast
 
 from ..native import as_python, is_compiled
 
@@ -23,6 +23,8 @@ if TYPE_CHECKING:
     Ints = vec[i64]
     Count = i64
     """What counts and indexes them."""
+
+COMPILING: Final = "numba compiles the impact laws, once for a machine: half a minute"
 
 Function = TypeVar("Function", bound=Callable[..., object])
 
@@ -126,7 +128,7 @@ def vector_types() -> tuple[Callable[[list[float]], Any], Callable[[list[int]], 
 
 
 @contextmanager
-def told_of_compiling(tell: Callable[[], None], is_over: Callable[[], bool] = bool) -> Iterator[None]:
+def told_of_compiling(tell: Callable[[str], object], is_over: Callable[[], bool] = bool) -> Iterator[None]:
     """Tell once when numba compiles meanwhile, instead of taking what it compiled before.
 
     Raises:
@@ -144,7 +146,7 @@ def told_of_compiling(tell: Callable[[], None], is_over: Callable[[], bool] = bo
         def on_start(self, event: Any) -> None:
             if not self.told:
                 self.told = True
-                tell()
+                tell(COMPILING)
             if is_over():
                 raise KeyboardInterrupt
 

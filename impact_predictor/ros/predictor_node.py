@@ -67,8 +67,7 @@ class PredictorNode(Node):
 
     def _connect(self, scenes: dict[str, Scene], is_over: Callable[[], bool]) -> None:
         compiles = any(scene.samples or not scene.radius for scene in scenes.values())
-        tell = partial(self.get_logger().info, "numba compiles the impact laws, once for a machine: some 20 s")
-        with told_of_compiling(tell, is_over) if compiles else nullcontext():
+        with told_of_compiling(self.get_logger().info, is_over) if compiles else nullcontext():
             self._monitor = Monitor(scenes)
         # Each subscription that tells what was lost costs the single-threaded executor as much as another topic.
         counts_losses = self.executor_kind == "events" or len(scenes) == 1
