@@ -74,6 +74,9 @@ class Program(click.Group):
 
 def _sentence(error: click.ClickException) -> str:
     said = error.format_message().rstrip(".")
+    option = error.param if isinstance(error, click.BadParameter) else None
+    if option is not None and option.nargs > 1:
+        said += f", and {option.opts[0]} takes {option.metavar}"
     context = error.ctx if isinstance(error, click.UsageError) else None
     return said if context is None else f"{said}; see `{context.command_path} --help`"
 

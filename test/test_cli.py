@@ -108,6 +108,8 @@ def test_a_wrong_option_is_said_in_one_line_that_names_the_help() -> None:
     assert refused("replay", "--speed", "3").endswith("replay --help`")
     assert "Missing option '--height'" in refused("solve", "plate", "--length", "1")
     assert "'x' is not a valid float" in refused(*PLATE, "--omega", "x")
+    three = refused(*PLATE, "--twist", "0.3", "-0.5", "--json")
+    assert "'--json' is not a valid float, and --twist takes VX VY OMEGA; see" in three
 
 
 def test_help_and_solve_load_nothing_that_they_do_not_need() -> None:

@@ -55,9 +55,8 @@ def bench() -> None:
     type=float,
     callback=whole_number,
     default=1e6,
-    show_default="1e6",
     metavar="N",
-    help="Problems.",
+    help="How many problems. [default: 1e6]",
 )
 @seed_option("Which random problems.")
 @choice("--law", "Impact law to be checked.", *LAWS, "both", default="both")

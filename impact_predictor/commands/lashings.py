@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     type=float,
     required=True,
     metavar="LENGTH BREADTH GM SPEED",
-    help="Four numbers: length, breadth and GM in m, service speed in knots.",
+    help="Four numbers: length, breadth and metacentric height GM in m, service speed in knots.",
 )
 @number("--position", "Where the units are stowed: part of the vessel's length, from 0 aft to 1.", required=True)
 @choice("--deck", "Where: on deck, high or low, in the 'tween deck or in the lower hold.", *LONGITUDINAL, default="low")

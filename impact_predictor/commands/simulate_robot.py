@@ -59,7 +59,9 @@ EXAMPLES: Final = (
     **FROM_0,
 )
 @text("--sole", "X,X,Y", "Flat soles in its place, m: where heel and toe are along their links' x axes, and the width.")
-@click.option("--gait", type=click.Choice(GAITS), help="[default: trot on four feet, step on two]")
+@click.option(
+    "--gait", type=click.Choice(GAITS), help="Which feet swing together. [default: trot on four feet, step on two]"
+)
 @number("--swing", "Duration of a swing, s.", 0.2, **POSITIVE)
 @number("--strike", "Speed with which a swing is planned to end on the ground, m/s; 0 brakes to rest.", 0.6, **FROM_0)
 @number("--speed", "Planned speed ahead, m/s (that of a robot of its size unless given).", **FROM_0)
