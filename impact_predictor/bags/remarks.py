@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 StatusCounts = Mapping[Status, int]
 
 MENDABLE: Final = (
+    Status.NOT_FINITE,
+    Status.BAD_QUATERNION,
     Status.MALFORMED,
     Status.WRONG_FRAME,
     Status.NO_TRANSFORM,

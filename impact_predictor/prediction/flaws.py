@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from math import isfinite, sqrt
 from typing import Any, Final
 
 from ..wording import listed
-from .monitor import Monitor
+from .checks import LARGEST, check_orientation
+from .monitor import SPOILT, Monitor
 from .predictor import Predictor
-from .types import FeetStates, Geometry, Imu, Joints, Sample, Schedule, Status, Terrain, Wrench
+from .types import FeetStates, Geometry, Imu, Joints, Sample, Schedule, Status, Terrain, Transform, Wrench
 
 _MOST_NAMED: Final = 4
 _OR_TF: Final = ", or give tf.body_frame where /tf connects them"
@@ -20,6 +23,10 @@ def flaw_of(monitor: Monitor, body: str | None, status: Status, message: Any) ->
     """
     if status is Status.NO_TRANSFORM and monitor.tree is not None:
         return monitor.tree.flaw
+    if status in SPOILT:
+        # Transforms come several at a time.
+        parts = message if type(message) is tuple else (message,)
+        return next((said for one in parts if (said := _spoilt(status, one))), "")
     if status is Status.STAMP_REPEATED and getattr(message, "stamp", None) == 0:
         return "its stamp is 0, as the one before: fill in header.stamp of all messages"
     predictor = None if body is None else monitor.predictors.get(body)
@@ -55,6 +62,32 @@ def flaw_of(monitor: Monitor, body: str | None, status: Status, message: Any) ->
         lacks = listed(lacking, _MOST_NAMED)
         return f"it lacks {lacks} of robot.urdf{others}: tell every joint of the model by its name there"
     return ""
+
+
+def _spoilt(status: Status, message: Any) -> str:
+    """Which field of a message is bad in itself; "" where it is another's."""
+    whose = f"{message.child_frame_id!r} in {message.frame_id!r}: " if isinstance(message, Transform) else ""
+    if status is Status.BAD_QUATERNION:
+        told = message.orientation
+        if told is None:
+            return "orientation_covariance[0] is -1, so no orientation is measured, but this input needs one"
+        shown = ", ".join([f"{number:g}" for number in told])
+        is_bad = check_orientation(told) is status
+        return f"{whose}orientation is ({shown}), not of unit length: look at its source" if is_bad else ""
+    bad = [one for one in _numbers(message) if not abs(one[1]) < sqrt(LARGEST)]
+    # Covariances may be as large as they like.
+    name, number = min(bad, key=lambda one: isfinite(one[1]), default=("", 0.0))
+    return f"{whose}{name} is {number:g}: look at its source" if bad else ""
+
+
+def _numbers(told: Any, name: str = "") -> Iterator[tuple[str, float]]:
+    """The numbers of a message, each with the field and the place in which it stands, from 0."""
+    if isinstance(told, float):
+        yield name, told
+    elif isinstance(told, tuple):
+        fields = getattr(told, "_fields", None) or [f"{name}[{k}]" for k in range(len(told))]
+        for field, value in zip(fields, told, strict=True):
+            yield from _numbers(value, field)
 
 
 def _other_support(monitor: Monitor, message: Any) -> str:

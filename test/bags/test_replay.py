@@ -136,6 +136,8 @@ def test_odd_messages_are_counted_and_leave_the_others_as_they_are(
         Status.MALFORMED: 2,
     }
     assert result.geometry_statuses == {Status.ACCEPTED: 4, Status.MALFORMED: 1}
+    said = "messages on /cube/odom were refused as NOT_FINITE: angular[2] is nan: look at its source"
+    assert any(note.endswith(said) for note in result.notes)
     assert sorted(read_outputs(tmp_path / "out.mcap")) == sorted(predicted_directly(scene, messages))
 
 

@@ -18,9 +18,10 @@ from impact_predictor.prediction.flaws import flaw_of
 from impact_predictor.prediction.monitor import Monitor
 from impact_predictor.prediction.predictor import Predictor
 from impact_predictor.prediction.scene import Scene
-from impact_predictor.prediction.types import Geometry, Prediction, Sample, Status, Vector3
+from impact_predictor.prediction.types import Geometry, Imu, Prediction, Sample, Status, Transform, Vector3
 
 ZEROS = (0.0,) * 36
+POSE = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0)
 
 
 def flying_sample(stamp: int = 0, **changes: Any) -> Sample:
@@ -249,3 +250,44 @@ def test_stamps_that_nobody_fills_in_are_told_from_those_that_repeat(stamp: int,
     flaw = flaw_of(monitor, "", Status.STAMP_REPEATED, sample)
     assert flaw.startswith(said)
     assert bool(flaw) == bool(said)
+
+
+@pytest.mark.parametrize(
+    ("message", "status", "flaw"),
+    [
+        (flying_sample(position=(0.0, 0.0, math.nan)), Status.NOT_FINITE, "position[2] is nan: look at its source"),
+        (flying_sample(linear=(1e200, 0.0, 0.0)), Status.NOT_FINITE, "linear[0] is 1e+200: look at its source"),
+        (
+            flying_sample(pose_covariance=(1e308,) * 36, twist_covariance=(*ZEROS[:35], math.inf)),
+            Status.NOT_FINITE,
+            "twist_covariance[35] is inf: look at its source",
+        ),
+        (
+            Geometry(0, "cube", (*CUBE, (0.0, math.nan, 0.0))),
+            Status.NOT_FINITE,
+            "points[8][1] is nan: look at its source",
+        ),
+        (
+            (Transform(0, "a", "b", *POSE), Transform(0, "b", "c", (math.inf, 0.0, 0.0), POSE[1])),
+            Status.NOT_FINITE,
+            "'c' in 'b': position[0] is inf: look at its source",
+        ),
+        (
+            flying_sample(orientation=(0.0, 0.0, 0.0, 0.5)),
+            Status.BAD_QUATERNION,
+            "orientation is (0, 0, 0, 0.5), not of unit length: look at its source",
+        ),
+        (
+            (Transform(0, "a", "b", *POSE), Transform(0, "b", "c", POSE[0], (0.0,) * 4)),
+            Status.BAD_QUATERNION,
+            "'c' in 'b': orientation is (0, 0, 0, 0), not of unit length: look at its source",
+        ),
+        (
+            Imu(0, "imu", None, (0.0,) * 3, (0.0, 0.0, 9.81)),
+            Status.BAD_QUATERNION,
+            "orientation_covariance[0] is -1, so no orientation is measured, but this input needs one",
+        ),
+    ],
+)
+def test_the_field_of_a_message_that_is_bad_is_named(message: Any, status: Status, flaw: str) -> None:
+    assert flaw_of(Monitor({"": CUBE_SCENE}), "", status, message) == flaw
