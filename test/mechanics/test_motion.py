@@ -182,6 +182,14 @@ def test_a_slip_that_stops_for_an_instant_between_two_steps_is_seen() -> None:
     agrees(Case(state, points, 1, 0.04256341295719136, 0.6, (0.9898680859818764, -9.759931412277167)), 2e-4)
 
 
+def test_a_slip_that_bends_both_ways_and_stops_for_an_instant_between_two_long_steps_is_seen() -> None:
+    points, slope = ((-0.926, -0.123), (0.824, -0.123)), 0.24
+    gravity = 9.81 * math.sin(slope), -9.81 * math.cos(slope)
+    case = Case(standing(points[0], 0.13, 0.38, 0.03), points, 0, 0.326, 0.3, gravity)
+    assert agrees(case, 1e-3) == [MotionKind.SLIDING, MotionKind.TURNING, MotionKind.SLIDING]
+    assert case._replace(tolerance=1e-6).fall().time == pytest.approx(case.fall().time, rel=1e-6)
+
+
 def test_a_stance_that_can_neither_stick_nor_be_left_slips_the_one_way_that_keeps_it_down() -> None:
     # Turning so fast that sticking would take a pull, but not so fast that the foot would rise by itself.
     for omega, friction in ((-4.9, 1.0), (-4.9, 4.0), (-5.3, 4.0)):

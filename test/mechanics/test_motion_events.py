@@ -60,6 +60,15 @@ def test_a_dip_between_two_rising_ends_is_where_their_tangents_meet_below_zero()
     assert dip(0.0, -4.0, 1.0, 4.0) > 1.0
 
 
+@pytest.mark.parametrize("lowest", [-0.01, 0.01])
+def test_a_dip_below_tangents_that_meet_above_zero_is_where_its_cubic_is_lowest(lowest: float) -> None:
+    # (s - 0.7)^2 (2 s + 1) bends down, then up; its tangents 0.49 - 0.42 s and 0.27 + 1.98 (s - 1) meet above zero.
+    cubic = np.poly1d([0.7, 0.7], r=True) * np.poly1d([2.0, 1.0]) + lowest
+    slopes = cubic.deriv()
+    found = dip(cubic(0.0), slopes(0.0), cubic(1.0), slopes(1.0))
+    assert found == pytest.approx(0.7) if lowest < 0.0 else found > 1.0
+
+
 def test_three_samples_may_hide_a_fall_where_their_parabola_has_one() -> None:
     # (s - 0.4)^2 - 0.01 at 0, 1/2 and 1 is positive at the ends alone; with 0.01 more everywhere, it touches zero.
     assert may_fall(0.15, 0.0, 0.35)

@@ -140,12 +140,17 @@ def safe_step(value: float, rate: float, fall: float) -> float:
 def dip(value: float, slope: float, end_value: float, end_slope: float) -> float:
     """Where on 0..1 a condition that is positive at both ends may fall to zero between them; beyond 1 if it does not.
 
-    The tangents at the two ends of a dip meet below it.
+    The tangents at the two ends of a dip meet below it, unless it also bends the other way: then its cubic shows it.
     """
     if value <= 0.0 or end_value <= 0.0 or not slope < 0.0 < end_slope:
         return _BEYOND
     at = (end_value - value - end_slope) / (slope - end_slope)
-    return at if value + slope * at <= 0.0 else _BEYOND
+    if value + slope * at <= 0.0:
+        return at
+    rise = end_value - value
+    square, cube = 3.0 * rise - 2.0 * slope - end_slope, slope + end_slope - 2.0 * rise
+    at = -slope / (square + math.sqrt(square * square - 3.0 * slope * cube))
+    return at if value + at * (slope + at * (square + at * cube)) <= 0.0 else _BEYOND
 
 
 def fall(value: float, slope: float, end_value: float, end_slope: float) -> float:
