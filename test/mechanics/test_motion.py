@@ -199,6 +199,18 @@ def test_a_stance_that_can_neither_stick_nor_be_left_slips_the_one_way_that_keep
             assert trail == [MotionKind.SLIDING]
 
 
+@pytest.mark.parametrize("omega", [1e-9, 1e-7, 1e-5, 1e-3])
+def test_a_rod_that_slips_and_hops_by_next_to_nothing_comes_down_when_its_mirror_image_does(omega: float) -> None:
+    falls = []
+    for mirror in (1.0, -1.0):
+        points = ((-0.9 * mirror, 0.0), (0.8 * mirror, 0.0))
+        start = standing(points[0], 0.0, mirror * omega, 0.5 * mirror)
+        falls.append(Case(start, points, 0, 0.25, 0.3).fall())
+    assert [fall.point for fall in falls] == [1, 1]
+    assert falls[1].time == falls[0].time
+    assert falls[1].state.omega == -falls[0].state.omega
+
+
 @pytest.mark.parametrize("kind", MotionKind, ids=lambda kind: kind.name.lower())
 @pytest.mark.parametrize(("length", "second"), [(1e-3, 1.0), (1.0, 1e4), (250.0, 0.01)])
 def test_units_of_length_and_time_do_not_matter(kind: MotionKind, length: float, second: float) -> None:

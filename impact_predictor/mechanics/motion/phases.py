@@ -201,7 +201,7 @@ class MotionPhase:
             _, normal, normal_b = self.body.forces_of_both(self.state, felt, z, s)
             return [stops, (normal, math.nan), (normal_b, math.nan)]
         gap, speed = self.side * u + self.home, self.side * w
-        touches, overturns = (gap, speed), (self.limit - gap, -speed)
+        touches, overturns = (gap, speed), (self.limit - self.side * u, -speed)
         forces = self.body.forces(self.contact, self.state, felt, u, w, z, s)
         if self.state != STICK:
             return [touches, overturns, stops, (-forces.free, math.nan)]

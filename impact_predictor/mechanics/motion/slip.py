@@ -22,12 +22,14 @@ _LONGEST: Final = 1e300
 
 
 class SlipPhase(MotionPhase):
-    """A contact slips, with friction `drag` of its sign, until the body has turned by `back` rad or as far forth."""
+    """A contact slips, with friction `drag` of its sign, until the body has turned as far as it can back or forth."""
 
-    def __init__(self, problem: RockingProblem, drag: float, omega: float, slip: float, back: float) -> None:
-        states = PLUS if math.copysign(1.0, drag) > 0.0 else MINUS, OPEN
+    def __init__(self, problem: RockingProblem, drag: float, omega: float, slip: float, travel: Vector) -> None:
+        slips = PLUS if math.copysign(1.0, drag) > 0.0 else MINUS
+        # The nearer end is home: seen from there a tiny hop keeps its digits, whichever way it comes down.
+        states = (slips, OPEN) if travel[0] <= travel[1] else (OPEN, slips)
         super().__init__(problem, states, 0.0, (0.0, omega, 0.0, slip))
-        self.home = back
+        self.home = min(travel)
         # Near a balance small accelerations count: no part of them is taken for rounding.
         self.scale = self.scale[0], 0.0
         if not drag:
@@ -61,8 +63,8 @@ def slide(
         contact = Contact(-arm[0], -arm[1], abs(drag))
         body = RockingBody(TwoPointBody(1.0, rho_squared, contact, contact), (arm, arm), ((0.0, 0.0), (0.0, 0.0)))
         support = FixedSupport(math.atan2(-gravity[0], -gravity[1]), math.hypot(*gravity))
-        back, forth = (min(part, _FAR) for part in travel)
-        phase = SlipPhase(RockingProblem(body, support, back + forth, _STEP * tolerance), drag, omega, slip, back)
+        ends = min(travel[0], _FAR), min(travel[1], _FAR)
+        phase = SlipPhase(RockingProblem(body, support, max(ends), _STEP * tolerance), drag, omega, slip, ends)
         heading = omega or phase.instants[0].alpha
         if travel[heading > 0.0] <= 0.0 and not math.isnan(phase.instants[0].alpha) and heading:
             return still._replace(event=Event.TOUCHES if omega else Event.NEVER)
@@ -70,7 +72,8 @@ def slide(
         time, angle, rate = end.time, end.u, end.w
     except (ArithmeticError, ValueError):  # numbers overflow
         return still._replace(event=Event.JAMS)
-    direction = -1 if event is Event.TOUCHES else 1
+    away = 1 if phase.side > 0.0 else -1  # from home
+    direction = -away if event is Event.TOUCHES else away
     if event is Event.TOUCHES or event is End.OVERTURNED:
         event, angle = Event.TOUCHES, direction * travel[direction > 0]
     # The normal force drops out of the balance of x + drag y, whose rate grows by gx + drag gy per second.
