@@ -102,6 +102,37 @@ def test_the_next_strike_is_the_first_impact_of_a_run(body: TwoPointBody, suppor
     assert struck >= 15
 
 
+def later(support: Any, time: float) -> Any:
+    """The support as it is seen from a later time on."""
+    if isinstance(support, FixedSupport):
+        return support
+    return MovingSupport(lambda t: support.function(t + time), support.period, support.gravity, support.origin)
+
+
+@pytest.mark.parametrize("support", [*SUPPORTS.values(), FixedSupport(0.05)], ids=[*SUPPORTS, "fixed"])
+@pytest.mark.parametrize("body", [CRATE, SMOOTH, DRUM], ids=["crate", "smooth", "drum"])
+def test_a_motion_that_is_followed_anew_from_a_state_on_the_way_comes_to_the_same_strike(
+    body: TwoPointBody, support: Any
+) -> None:
+    draw, struck = random.Random(11), 0
+    for _ in range(25):
+        start, old = random_start(draw, body)
+        fall = next_strike(body, start, old, support, 1.0)
+        if fall is None:
+            continue
+        struck += 1
+        time = draw.uniform(0.0, fall.time)
+        run = rock(body, start, support, duration=1.0, max_events=50)
+        states = run.states(time)
+        stands = None if states == "OO" else states.index("O") ^ 1
+        anew = next_strike(body, run.state(time), stands, later(support, time), 1.0)
+        assert anew is not None
+        assert anew.point == fall.point
+        assert time + anew.time == pytest.approx(fall.time, abs=1e-7)
+        assert anew.state == pytest.approx(fall.state, abs=1e-6)
+    assert struck > 10
+
+
 @pytest.mark.parametrize("old", [0, 1])
 @pytest.mark.parametrize("tilt", [1e-9, 0.2])
 def test_a_measured_gap_and_normal_velocity_of_the_standing_contact_are_dropped(old: int, tilt: float) -> None:
