@@ -25,8 +25,8 @@ _COMPILED = {
         "engine equations events falling felt integrate phases pivot reactions slip spatial spatial_problem stances"
     ),
     "prediction": (
-        "checks course cylinder impact motion_recorder planar points predictor recorded scatter spatial spatial_impact "
-        "vectors"
+        "checks course cylinder drawn impact motion_recorder planar points predictor recorded scatter spatial "
+        "spatial_impact vectors"
     ),
     "prediction.deck": "frame motion window",
     "prediction.walking": (

@@ -1,4 +1,6 @@
-"""What the answers to all draws of an impact say, as law code on flat sequences (see `mechanics.compiled`)."""
+"""The draws of an impact, and what the answers to all of them say, as law code on flat sequences (see
+`mechanics.compiled`).
+"""
 
 from __future__ import annotations
 
@@ -13,7 +15,7 @@ from ..mechanics.types import Mode
 if TYPE_CHECKING:
     from ..mechanics.compiled import Floats
 
-_, STOP, SLIDE, PIVOT_SLIDE, PIVOT, BACK_PIVOT, FLIGHT = (int(mode) for mode in Mode)
+NO_IMPACT, STOP, SLIDE, PIVOT_SLIDE, PIVOT, BACK_PIVOT, FLIGHT = (int(mode) for mode in Mode)
 
 OF_MODE = 2
 """Numbers of each mode in what is told: its probability, and how many draws have it."""
@@ -32,6 +34,51 @@ SCRATCH = 15
 
 ROUNDING = 1e-9
 ROOT = sqrt(2.0)
+
+
+def spread(
+    n: int,
+    standing: int,
+    problem: Floats,
+    turning: Sequence[Floats],
+    points: Sequence[Floats],
+    given: Floats,
+    problems: Sequence[Floats],
+) -> None:
+    """Fill in the problems of draws: a problem of n contacts, with what is uncertain of it moved by points.
+
+    `points` has a row for each number that is uncertain. `turning` makes of the first of them, where it has rows, the
+    changes of the twist. `given` is the standard deviation of friction, of restitution and of the gaps; then the rates
+    in m/s of those that close, which follow the first `standing` ones. What does not vary has a deviation of zero, and
+    no row.
+    """
+    friction, restitution, gap = given[0], given[1], given[2]
+    for d in range(len(problems)):
+        draw = problems[d]
+        for j in range(len(problem)):
+            draw[j] = problem[j]
+        row = len(turning)
+        for i in range(row):
+            change = 0.0
+            for j in range(row):
+                change += turning[i][j] * points[j][d]
+            draw[7 + i] += change
+        if friction > 0.0 or restitution > 0.0:
+            for i in range(n):
+                k = BODY + CONTACT * i
+                draw[k + 6] = max(0.0, draw[k + 6] + friction * points[row][d])
+                draw[k + 7] = min(1.0, max(0.0, draw[k + 7] + restitution * points[row + 1][d]))
+            row += 2
+        if gap > 0.0:
+            first = inf
+            for i in range(standing, n):
+                k = BODY + CONTACT * i + 11
+                draw[k] += gap * points[row + i - standing][d]
+                first = min(first, draw[k] / -given[3 + i - standing])
+            for i in range(standing, n):
+                k = BODY + CONTACT * i + 11
+                # Time counts from when the first of them closes.
+                draw[k] = max(0.0, draw[k] + first * given[3 + i - standing])
 
 
 def over(margin: float, blur: float) -> float:

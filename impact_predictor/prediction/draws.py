@@ -28,6 +28,9 @@ from .types import Covariance, Sample, Uncertainty, Vector3
 from .uncertainty import factor_of, normal_points, product
 from .vectors import Axes, cross
 
+NOTHING = np.empty((0, 0))
+"""What turns no draw of a twist that is sure."""
+
 DRAW_STEPS = 5
 """Steps of the law for a draw: its error is small beside what the draws differ by."""
 
@@ -37,7 +40,7 @@ class Draws:
 
     def __init__(self, scene: Scene, solve: Any) -> None:
         self._scene, self._solve = scene, solve
-        self._tell = teller()
+        self._spread, self._tell = law_code()
         self._coefficients = bool(scene.friction_deviation or scene.restitution_deviation)
 
     def drawn(
@@ -69,18 +72,9 @@ class Draws:
             points = normal_points(scene.samples, dimensions)
             count = points.shape[1]
             problems = np.empty((count, len(problem)))
-            problems[:] = problem
-            contacts = problems[:, BODY:].reshape(count, n, CONTACT)
-            if turns:
-                problems[:, 7:13] += product(product(into_world(axes, scene.center_of_mass), factor), points[:6]).T
-                points = points[6:]
-            if self._coefficients:
-                contacts[:, :, 6] = np.maximum(0.0, contacts[:, :, 6] + scene.friction_deviation * points[0][:, None])
-                bounces = contacts[:, :, 7] + scene.restitution_deviation * points[1][:, None]
-                contacts[:, :, 7] = np.minimum(1.0, np.maximum(0.0, bounces))
-                points = points[2:]
-            if striking:
-                contacts[:, standing:, 11] = gaps_of(contacts[:, standing:], rates, gap * points.T)
+            moves = product(into_world(axes, scene.center_of_mass), factor) if turns else NOTHING
+            deviations = scene.friction_deviation, scene.restitution_deviation, gap if striking else 0.0
+            self._spread(n, standing, problem, moves, points, np.array((*deviations, *rates)), problems)
         answers, notes = np.empty((count, size)), np.empty(count, np.int64)
         self._solve(problems, answers, notes, DRAW_STEPS if dimensions else STEPS)
         told = np.empty(LIFTS + n + size + SCRATCH + count)
@@ -107,25 +101,14 @@ class Draws:
 
 
 @cache
-def teller() -> Callable[..., None]:
-    """The law code that reads the answers of draws, compiled, where it can be, and loaded."""
-    tell = door(drawn.tell, inlined=(drawn.over,))
-    tell(
-        1,
-        0,
-        np.ones(BODY + CONTACT),
-        np.ones((1, ANSWER + RESULT)),
-        np.ones(21),
-        np.empty(LIFTS + 2 + ANSWER + RESULT + SCRATCH),
-    )
-    return tell
-
-
-def gaps_of(contacts: NDArray[np.float64], rates: list[float], changes: NDArray[np.float64]) -> NDArray[np.float64]:
-    """The gaps (k, n) of contacts that approach at some rates, with changes, when the first of them closes."""
-    gaps, speeds = contacts[:, :, 11] + changes, -np.array(rates)
-    first = (gaps / speeds).min(axis=1)
-    return np.asarray(np.maximum(0.0, gaps - first[:, None] * speeds))
+def law_code() -> tuple[Callable[..., None], Callable[..., None]]:
+    """The law code that makes draws, and that which reads their answers, compiled, where it can be, and loaded."""
+    spread, tell = door(drawn.spread), door(drawn.tell, inlined=(drawn.over,))
+    problem, draw = np.ones(BODY + CONTACT), np.ones((1, BODY + CONTACT))
+    spread(1, 0, problem, NOTHING, np.ones((1, 1)), np.array((0.0, 0.0, 1.0, -1.0)), draw)
+    numbers = np.empty(LIFTS + 2 + ANSWER + RESULT + SCRATCH)
+    tell(1, 0, problem, np.ones((1, ANSWER + RESULT)), np.ones(21), numbers)
+    return spread, tell
 
 
 def into_world(axes: Axes, center: Vector3) -> NDArray[np.float64]:

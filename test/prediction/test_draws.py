@@ -238,7 +238,7 @@ def test_draws_have_the_same_bits_with_numba_and_without(monkeypatch: pytest.Mon
     from impact_predictor.prediction import draws
 
     compiled = [announced(*falling(seed), spread_by(0.02), **DRAWN) for seed in range(2)]
-    prepared = spatial.solver, motion.solver, draws.teller
+    prepared = spatial.solver, motion.solver, draws.law_code
     try:
         for one in prepared:
             one.cache_clear()

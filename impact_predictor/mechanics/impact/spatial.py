@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import cache
+from functools import cache, lru_cache
 from math import inf
 from typing import NamedTuple
 
@@ -349,8 +349,12 @@ def _flags(notes: NDArray[np.int64]) -> NDArray[np.uint16]:
     return flags
 
 
+@lru_cache(maxsize=16)
 def workspace(n: int, motion: int = 6) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    """Numbers and marks that the law code of n contacts works with, and `motion` coordinates."""
+    """Numbers and marks that the law code of n contacts works with, and `motion` coordinates.
+
+    All that use it share it: law code keeps nothing in it, and holds Python's lock while it runs.
+    """
     return np.empty(room(n, motion)), np.zeros(2 * n, np.int64)
 
 
