@@ -100,8 +100,7 @@ class SpatialImpactModel:
                 sample, axes, problem, count, rates, deviation, now, plane.axis
             )
             answer = self._stopped(problem, drawn, least)
-            contacts = outcomes_of(answer, collision.contacts, positions, repeat(normal))
-            contacts = [one._replace(lift_probability=lift) for one, lift in zip(contacts, lifts, strict=True)]
+            contacts = outcomes_of(answer, collision.contacts, positions, repeat(normal), lifts)
         vx, vy, vz, wx, wy, wz, lost = answer[:ANSWER]
         after = SpatialTwist((vx, vy, vz), (wx, wy, wz))
         stood, struck = contacts[:count], contacts[count:]
@@ -210,9 +209,15 @@ def plane_at(scene: Scene, collision: SpatialCollision) -> ImpactPlane:
 
 
 def outcomes_of(
-    answer: list[float], contacts: ActiveContacts, positions: Sequence[Vector3], normals: Iterable[Vector3]
+    answer: list[float],
+    contacts: ActiveContacts,
+    positions: Sequence[Vector3],
+    normals: Iterable[Vector3],
+    lifts: Sequence[float] = (),
 ) -> list[PointOutcome]:
-    """What an answer of the law says of each contact, at its position and with the normal there."""
+    """What an answer of the law says of each contact, at its position, with the normal there, and with the probability
+    that it lifts, where that is known.
+    """
     found, count = [], len(contacts.old)
     places = zip(contacts.old + contacts.new, positions, normals, strict=False)
     for k, (point, position, normal) in enumerate(places):
@@ -226,6 +231,7 @@ def outcomes_of(
                 impulse=(a, b, c),
                 velocity=(u, v, w),
                 state=STATES[int(state)],
+                lift_probability=lifts[k] if lifts else None,
             )
         )
     return found

@@ -42,9 +42,10 @@ def lines(times: Sequence[float], columns: Iterable[Sequence[float]]) -> list[tu
     found = []
     for column in columns:
         whole = turning = 0.0
-        # Machine code makes a loop of numbers of this, and calls Python for a zip that is strict.
+        # Machine code makes a loop of numbers of a list, and calls Python for a zip that is strict.
+        values = list(column)
         for k in range(count):
-            value = column[k]
+            value = values[k]
             whole += value
             turning += arms[k] * value
         slope = turning / spread
@@ -126,8 +127,10 @@ def applied(rows: Axes, vector: Vector3) -> Vector3:
     return a * x + b * y + c * z, d * x + e * y + f * z, g * x + h * y + i * z
 
 
-to_body = applied
-"""A vector of the world frame in the body frame, whose axes come first."""
+def to_body(axes: Axes, vector: Vector3) -> Vector3:
+    """A vector of the world frame in the body frame."""
+    # Another name for `applied` would do, but machine code calls it as Python does, with each number an object.
+    return applied(axes, vector)
 
 
 @lru_cache(maxsize=16)

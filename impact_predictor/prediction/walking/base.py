@@ -75,7 +75,8 @@ class BaseMotion:
 def _line(twists: Sequence[tuple[int, tuple[float, ...]]]) -> TwistLine | None:
     if len(twists) < FEWEST or twists[-1][0] - twists[0][0] < LEAST_SPAN:
         return None
-    ages = [(stamp - twists[-1][0]) / NANOSECONDS for stamp, twist in twists]
+    last = twists[-1][0]
+    ages = [(stamp - last) / NANOSECONDS for stamp, twist in twists]
     each = lines(ages, zip(*[twist for stamp, twist in twists], strict=True))
     return tuple([now for now, rate in each]), tuple([rate for now, rate in each])
 

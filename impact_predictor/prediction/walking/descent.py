@@ -21,8 +21,14 @@ from .rhythm import DeviationScale, StrideRhythm
 if TYPE_CHECKING:
     from .ground import GroundLevel
 
-STRIKE, REST = 0, 1
-AXES: tuple[Cubic, ...] = ((1.0, 0.0, 0.0, 0.0), (0.0, 1.0, 0.0, 0.0), (0.0, 0.0, 1.0, 0.0), (0.0, 0.0, 0.0, 1.0))
+STRIKE: Final = 0
+REST: Final = 1
+AXES: Final[tuple[Cubic, ...]] = (
+    (1.0, 0.0, 0.0, 0.0),
+    (0.0, 1.0, 0.0, 0.0),
+    (0.0, 0.0, 1.0, 0.0),
+    (0.0, 0.0, 0.0, 1.0),
+)
 FIRST_MEAN: tuple[Cubic, Cubic] = ((0.0, -0.5, 0.0, 0.0), (0.0, 0.0, 15.0, 0.0))
 """Of a landing that strikes, and of one that brakes to rest, before any was seen: height, rate, acceleration, jerk."""
 FIRST_DEVIATION: tuple[Cubic, Cubic] = ((5e-4, 0.25, 30.0, 1000.0), (1e-4, 0.02, 30.0, 1000.0))
@@ -275,7 +281,7 @@ class DescentEstimator:
 
     def estimate(self, filtered: PointFilter, level: GroundLevel, prior: LandingPrior) -> Descent | None:
         """The landing of a point that comes down on a level; None of one that does not, or not before long."""
-        (x, v, a, j), *_ = filtered.rows
+        x, v, a, j = filtered.rows[0]
         gap, unsure = (x - level.height, v, a, j), level.deviation**2
         if v > -max(LEAST_RATE, FALLS * sqrt(filtered.covariance[2])):
             self._times, self._left_out = [None, None], [0, 0]

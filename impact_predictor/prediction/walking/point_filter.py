@@ -19,6 +19,7 @@ LEAST_SNAP, MOST_SNAP = 1e3, 3e8
 TURN: Final = 2.5e5  # variance of how the jerk changes at the highest place
 ADAPTS: Final = 0.08  # ... by this part with each measurement
 OUTLIER: Final = 3.0  # a point moves otherwise than before when a measurement is off by so many standard deviations
+Rows = tuple[Cubic, Cubic, Cubic, Cubic]
 LASTS: Final = 2520.0  # a cubic is followed until it is off by the root of a tenth of so many variances of a gap
 
 
@@ -40,7 +41,8 @@ class PointFilter:
         rates = (0.0,) * 4
         if frame.rate is not None and frame.velocity is not None:
             speed, rates = noise.rate**2, (frame.rate, *frame.velocity)
-        self.rows: list[Cubic] = [(x, v, 0.0, 0.0) for x, v in zip((frame.gap, *frame.position), rates, strict=True)]
+        gap, along, across, up = zip((frame.gap, *frame.position), rates, (0.0,) * 4, (0.0,) * 4, strict=True)
+        self.rows: Rows = gap, along, across, up
         """Value, rate, acceleration and jerk of the gap, and of each coordinate."""
         self.covariance: Triangle = (noise.gap**2, 0.0, speed, 0.0, 0.0, acceleration, 0.0, 0.0, 0.0, jerk)
 
@@ -48,7 +50,7 @@ class PointFilter:
         """Take the next frame; whether the filter `learns` from it how rough the motion is."""
         time = (frame.stamp - self.stamp) / NANOSECONDS
         self.stamp = frame.stamp
-        self.rows = [carried(row, time) for row in self.rows]
+        self.rows = self._carried(time)
         self.covariance = carried_covariance(self.covariance, time, self.snap)
         gap = self._correct(0, (frame.gap, *frame.position), noise.gap**2)
         rate = 0.0
@@ -70,7 +72,7 @@ class PointFilter:
 
     def motion(self, time: float) -> tuple[Vector3, Vector3]:
         """Position (m) and velocity (m/s) of the point `time` s after the last frame."""
-        along, across, up = [carried(row, time) for row in self.rows[1:]]
+        _, along, across, up = self._carried(time)
         return (along[0], across[0], up[0]), (along[1], across[1], up[1])
 
     def span(self, noise: GapNoise) -> float:
@@ -82,8 +84,8 @@ class PointFilter:
         deviations the gap was off.
         """
         rows, cov = self.rows, self.covariance
-        own = cov[2 * order]
-        off = measured[0] - rows[0][order]
+        own = cov[2] if order else cov[0]
+        off = measured[0] - (rows[0][1] if order else rows[0][0])
         surprise = off / sqrt(own + noise)
         if abs(surprise) > OUTLIER:
             factor = min(FIRST[2] / cov[9], ((off / OUTLIER) ** 2 - noise) / own)
@@ -112,13 +114,17 @@ class PointFilter:
             e0, e1, e2, e3 = e0 - v0, e1 - v1, e2 - v2, e3 - v3
         else:
             e0, e1, e2, e3 = e0 - x0, e1 - x1, e2 - x2, e3 - x3
-        self.rows = [
+        self.rows = (
             (x0 + k0 * e0, v0 + k1 * e0, a0 + k2 * e0, j0 + k3 * e0),
             (x1 + k0 * e1, v1 + k1 * e1, a1 + k2 * e1, j1 + k3 * e1),
             (x2 + k0 * e2, v2 + k1 * e2, a2 + k2 * e2, j2 + k3 * e2),
             (x3 + k0 * e3, v3 + k1 * e3, a3 + k2 * e3, j3 + k3 * e3),
-        ]
+        )
         return surprise
+
+    def _carried(self, time: float) -> Rows:
+        gap, along, across, up = self.rows
+        return carried(gap, time), carried(along, time), carried(across, time), carried(up, time)
 
 
 def carried(row: Cubic, time: float) -> Cubic:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Sequence
 from math import inf, sqrt
 from typing import Final
 
@@ -13,7 +12,7 @@ from ..vectors import add, axes_of, cross, dot, mean, to_world, total
 from .cubic import SCALE, CubicSums, GapNoise, PointFrame, slope_of, square_of, value_of
 
 SURE: Final = 3.0  # standard deviations of its mean rate within which a point rests
-WINDOWS = (1, 2, 4)  # contact times over which it is looked at: the more of them, the less noise hides
+WINDOWS: Final = (1, 2, 4)  # contact times over which it is looked at: the more of them, the less noise hides
 COURSE: Final = 6  # contact times of the descent before that, from which its course is told
 FEWEST: Final = 5  # frames of that course at least
 JERK: Final = 1000.0  # standard deviation in m/s^3 of how the acceleration of a foot changes
@@ -25,24 +24,25 @@ LASTS: Final = 0.9  # part of that which the frames span at least
 STILL: Final = 0.2  # part of the way, at the speed that gravity gives in a contact time, within which it rests
 
 
-def rate_of(frames: Sequence[PointFrame], noise: GapNoise) -> tuple[float, float]:
+def rate_of(frames: list[PointFrame], noise: GapNoise) -> tuple[float, float]:
     """The mean rate (m/s) of the gap over two frames or more, with its standard deviation."""
-    span = (frames[-1].stamp - frames[0].stamp) / NANOSECONDS
-    rate, deviation = (frames[-1].gap - frames[0].gap) / span, sqrt(2.0) * noise.gap / span
-    if noise.rate < deviation * sqrt(len(frames)):
+    first, last, count = frames[0], frames[-1], float(len(frames))
+    span = (last.stamp - first.stamp) / NANOSECONDS
+    rate, deviation = (last.gap - first.gap) / span, sqrt(2.0) * noise.gap / span
+    if noise.rate < deviation * sqrt(count):
         rates = [frame.rate for frame in frames if frame.rate is not None]
         if len(rates) == len(frames):
-            return total(rates) / len(rates), noise.rate / sqrt(len(rates))
+            return total(rates) / count, noise.rate / sqrt(count)
     return rate, deviation
 
 
-def falls(frames: Sequence[PointFrame], slow: float, noise: GapNoise) -> bool:
+def falls(frames: list[PointFrame], slow: float, noise: GapNoise) -> bool:
     """Whether a point surely comes down, faster than a `slow` one (m/s), over two frames or more."""
     rate, unsure = rate_of(frames, noise)
     return rate < -slow - SURE * unsure
 
 
-def is_slow(frames: Sequence[PointFrame], slow: float, noise: GapNoise) -> bool:
+def is_slow(frames: list[PointFrame], slow: float, noise: GapNoise) -> bool:
     """Whether a point may rest, or bounce where it struck, over two frames or more."""
     rate, unsure = rate_of(frames, noise)
     return abs(rate) <= slow + SURE * unsure + YIELDS
@@ -99,7 +99,7 @@ def stop_of(frames: deque[PointFrame], contact_time: int, slow: float, noise: Ga
     return None
 
 
-def hovers(frames: Sequence[PointFrame], base: Sample) -> bool:
+def hovers(frames: list[PointFrame], base: Sample) -> bool:
     """Whether a point moves with its base rather than it rests on the ground, over two frames or more."""
     axes, first, last = axes_of(base.orientation), frames[0], frames[-1]
     arm = add(last.position, base.position, -1.0)
