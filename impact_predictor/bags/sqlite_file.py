@@ -191,7 +191,7 @@ class _MessageRow(NamedTuple):
 
 
 def _varint(data: bytes, at: int) -> tuple[int, int]:
-    """A number of one to nine bytes, and where it ends."""
+    """A number of one to eight bytes, and where it ends. No message has one of nine: negative, or 2^56 or more."""
     number = 0
     for _ in range(8):
         byte = data[at]
@@ -199,7 +199,7 @@ def _varint(data: bytes, at: int) -> tuple[int, int]:
         number = number << 7 | byte & 0x7F
         if byte < 0x80:
             return number, at
-    return number << 8 | data[at], at + 1
+    raise ValueError("no message")
 
 
 def _integer(data: bytes, at: int, kind: int) -> tuple[int, int]:

@@ -208,6 +208,18 @@ def test_a_damaged_page_of_sqlite_stops_the_reading_there(tmp_path: Path) -> Non
     assert "SQLite finds it damaged" in said
 
 
+def test_a_message_with_a_number_that_no_recorder_gives_ends_what_is_read_of_an_sqlite_file_that_is_cut_off(
+    tmp_path: Path,
+) -> None:
+    whole = sqlite(tmp_path)
+    with sqlite3.connect(whole) as database:
+        database.execute("UPDATE messages SET id = ? WHERE id = 61", (2**56,))
+    whole.write_bytes(whole.read_bytes()[:-1])
+    messages, said = read_before(whole)
+    assert messages == MESSAGES[:60]
+    assert "it is cut off" in said
+
+
 @pytest.mark.parametrize("longer", [4, 16], ids=["messages within a page", "messages over several pages"])
 def test_a_large_sqlite_file_is_read_up_to_the_cut_though_its_tree_is_lost(tmp_path: Path, longer: int) -> None:
     # More than one page can point to, so that the root of the tree points to pages written late.
