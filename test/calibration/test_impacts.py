@@ -109,6 +109,15 @@ def test_a_body_at_rest_strikes_nothing_however_noisy_it_is() -> None:
         assert flights_of(record) == []
 
 
+def test_a_body_that_turns_back_above_its_support_between_two_poses_has_not_struck_it() -> None:
+    far = 0.006 * np.arange(7, 0, -1)  # at 1.2 m/s
+    for missed, struck in ((0.0, 1), (0.007, 0)):
+        heights = np.concatenate([0.003 + far, [0.003, 0.003 + missed], 0.003 + missed + far[::-1]])
+        flat = laid(np.zeros(len(heights)), (1.0, 0.0, 0.0))
+        motion = flat._replace(positions=flat.positions + np.outer(heights, [0.0, 0.0, 1.0]))
+        assert len(MotionRecord(SCENE, motion).impacts) == struck
+
+
 def test_free_flights_hold_no_impact_and_leave_out_what_is_near_the_support() -> None:
     for toss in tosses(NUMBER):
         record = MotionRecord(SCENE, toss.motion)

@@ -51,6 +51,8 @@ def test_kinds_are_what_they_are_called():
     for number in (wide.mass, abs(wide.old.x), abs(made["extreme"].twist.omega)):
         number = number[number > 0.0]
         assert np.log10(number.max() / number.min()) > 11.0
+    square = np.log10(wide.inertia / wide.mass)  # of the radius of gyration
+    assert (square.min(), square.max()) == pytest.approx((-12.0, 12.0), abs=0.1)
     slender = made["slender"].body
     assert slender.new.friction.max() > 5e3
 

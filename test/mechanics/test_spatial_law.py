@@ -289,6 +289,17 @@ def test_a_vice_that_closes_is_told_to_have_no_answer(law):
     assert finite(outcome)
 
 
+@pytest.mark.parametrize(("apart", "flags"), [(0.012, Flag.NONE), (0.009, Flag.NOT_CONVERGED)])
+def test_sweeps_of_contacts_that_are_nearly_one_end_before_they_settle_and_that_is_told_where_it_counts(apart, flags):
+    w = np.eye(6)
+    w[2, 5] = w[5, 2] = 1.0 - apart
+    outcome = solve_spatial_impact(w, points(2, 0.3, 0.0), [0.0, 0.0, -1.0, 0.0, 0.0, -1.0], "total")
+    assert outcome.flags == flags
+    # Either is near: each contact has half of what both need, and hardly approaches.
+    assert outcome.impulses[:, 2] == pytest.approx([0.5, 0.5], abs=0.01)
+    assert np.abs(outcome.velocities[:, 2]).max() < 1e-5
+
+
 BLOCKED = np.diag([1.0, 1.0, 0.0, 1.0, 1.0, 0.0])
 INDEFINITE = np.eye(6) + 2.0 * (np.eye(6, k=3) + np.eye(6, k=-3)) @ np.diag([0.0, 0.0, 1.0, 0.0, 0.0, 1.0])
 

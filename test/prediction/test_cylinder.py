@@ -174,3 +174,13 @@ def test_turning_across_the_axis_slips_too() -> None:
     arm = np.array([0.0, HALF, HEIGHT])
     touchdown = told(np.array([0.0, -HALF, 0.0]) + 1.0005 * arm, np.cross([-1.0, 0.0, 0.0], arm), [-1.0, 0.0, 0.3])
     assert len(touchdown.contacts) > 0
+
+
+@pytest.mark.parametrize(("side", "contacts"), [(1.0, 0), (-1.0, 2)])
+def test_what_rolls_as_fast_as_it_drifts_slips_at_its_edges_or_not_by_the_side_to_which_it_rolls(
+    side: float, contacts: int
+) -> None:
+    arm, drift = np.array([0.0, HALF, HEIGHT]), 0.3
+    velocity = np.cross([-1.0, 0.0, 0.0], arm) + np.array([drift, 0.0, 0.0])
+    touchdown = told(np.array([0.0, -HALF, 0.0]) + 1.0005 * arm, velocity, [-1.0, side * drift / HEIGHT, 0.0])
+    assert len(touchdown.contacts) == contacts

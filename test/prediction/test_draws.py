@@ -222,6 +222,13 @@ def test_a_contact_that_leaves_faster_lifts_more_likely() -> None:
     assert contact.lift_probability == pytest.approx(1.0 - margin.cdf(0.0), rel=1e-9)
 
 
+def test_contacts_that_strike_together_lift_together_as_likely_as_their_mean() -> None:
+    touchdown = announced(*even_edge(), samples=32, gap_deviation=0.0, law_deviation=0.3)
+    assert touchdown.uncertainty is not None
+    lifts = [contact.lift_probability for contact in touchdown.contacts]
+    assert min(lifts) < touchdown.uncertainty.probabilities[Mode.FLIGHT] < max(lifts)
+
+
 @pytest.mark.parametrize("first", [(-1.0, 0.0), (1e30, 0.0), (1.0, 0.5)], ids=["negative", "huge", "askew"])
 def test_an_odd_covariance_is_refused_and_leaves_numbers(first: tuple[float, float]) -> None:
     covariance = first + 34 * (0.0,)

@@ -115,6 +115,14 @@ def test_a_touchdown_that_happened_as_predicted_has_no_error() -> None:
     assert score.relative_error == pytest.approx(0.0, abs=CLOSE)
 
 
+def test_a_body_that_is_seen_a_little_too_low_has_landed_where_the_points_on_which_it_stood_are_as_low() -> None:
+    low = [one._replace(position=(one.position[0], 0.0, one.position[2] - 0.004)) for one in before() + after(4)]
+    score = only_score(SCENE, low)
+    assert score.scored
+    assert len(score.touchdown.old) == 2
+    assert score.relative_error == pytest.approx(0.0, abs=CLOSE)
+
+
 def test_the_median_of_the_samples_two_to_four_after_the_touchdown_is_what_is_measured() -> None:
     twists = [(0.9, 0.0, 0.9), (0.3, -0.1, 0.2), (0.1, -0.3, 0.0), (0.2, -0.2, -0.2), (0.8, 0.0, 0.8)]
     stamps = [sample.stamp for sample in after(5)]

@@ -1,10 +1,13 @@
 import pytest
 
 from impact_predictor.bags.read import BagMessage
-from impact_predictor.ros.messages import ODOMETRY, POLYGON
+from impact_predictor.bags.write import BagWriter
+from impact_predictor.ros import player
+from impact_predictor.ros.messages import JOINT_TRAJECTORY, ODOMETRY, POLYGON
 from impact_predictor.ros.player import GEOMETRY_AHEAD, LONGEST_GAP, SHORTENED_GAP, _await_others, _publish_all, timed
 
 SECOND = 1_000_000_000
+WITHOUT_ROS = "the player needs ROS 2: source it, or install the extra `ros`"
 
 
 def messages(*seconds):
@@ -88,7 +91,7 @@ def test_nobody_is_waited_for_any_more_once_the_player_is_to_stop():
 
 
 def test_how_long_messages_are_kept_may_be_overridden_where_a_publisher_keeps_them():
-    rclpy = pytest.importorskip("rclpy", reason="the player needs ROS 2: source it, or install the extra `ros`")
+    rclpy = pytest.importorskip("rclpy", reason=WITHOUT_ROS)
     from rclpy.qos import DurabilityPolicy
 
     from impact_predictor.ros.endpoints import publisher
@@ -105,3 +108,24 @@ def test_how_long_messages_are_kept_may_be_overridden_where_a_publisher_keeps_th
     finally:
         node.destroy_node()
         context.shutdown()
+
+
+def test_messages_that_stay_true_are_kept_for_late_subscribers_and_no_others(monkeypatch, tmp_path, capsys):
+    pytest.importorskip("rclpy", reason=WITHOUT_ROS)
+    from impact_predictor.ros import endpoints
+
+    kinds, kept, publisher = {"/points": POLYGON, "/plan": JOINT_TRAJECTORY, "/odom": ODOMETRY}, {}, endpoints.publisher
+
+    def noted(node, topic, *others):
+        made = publisher(node, topic, *others)
+        kept[topic] = made.qos_profile.durability.name
+        return made
+
+    monkeypatch.setattr(endpoints, "publisher", noted)
+    monkeypatch.setattr(player, "DISCOVERY", 0.0)
+    with BagWriter(tmp_path / "bag.mcap") as writer:
+        for topic, kind in kinds.items():
+            writer.write(topic, kind, 0, b"")
+    assert player.main(["player", str(tmp_path / "bag.mcap")]) == 1
+    assert "nobody has subscribed to" in capsys.readouterr().err
+    assert kept == {"/points": "TRANSIENT_LOCAL", "/plan": "TRANSIENT_LOCAL", "/odom": "VOLATILE"}

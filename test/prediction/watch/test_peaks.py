@@ -81,3 +81,10 @@ def test_a_law_counts_the_peaks_beyond_its_threshold_and_is_found_anew_after_som
             laws.append(peaks.law(0))
             found.append(k)
     assert np.diff(found).tolist() == [ANEW, ANEW]
+
+
+def test_a_tail_of_seven_peaks_is_enough_for_a_law_and_one_of_six_is_not() -> None:
+    for number, name in ((6, "unknown"), (7, "pareto")):
+        # Many that are alike and some beyond them, as Rayleigh's law does not have them.
+        peaks = np.concatenate([np.linspace(0.1, 0.4, 36), np.full(24, 1.0), np.linspace(1.5, 2.0, number)])
+        assert law_of(peaks, 100.0).name == name

@@ -30,7 +30,7 @@ from impact_predictor.ros.markers.message import (
     Marker,
     encode_markers,
 )
-from impact_predictor.ros.markers.scene import PERIOD, MarkerScene
+from impact_predictor.ros.markers.scene import PERIOD, MarkerScene, deck_of
 from impact_predictor.ros.messages import MARKER_ARRAY
 
 SECOND = 1_000_000_000
@@ -435,6 +435,15 @@ def test_contact_points_may_come_with_the_samples() -> None:
     assert scene.due(SECOND) is None
     scene.set_geometry("", Geometry(SECOND, "box", BOTTOM))
     assert find(drawn(scene, SECOND), "units").type == CUBE
+
+
+def test_a_deck_that_is_inclined_in_its_frame_is_drawn_about_the_middle_of_its_extent() -> None:
+    normal = (0.6, 0.0, 0.8)
+    slab = deck_of(BOX._replace(deck=MovingDeck(extent=(-2.0, 6.0, -4.0, 4.0)), normal=normal, height=0.5))
+    assert slab is not None
+    # The point of its plane that is nearest to (2, 0, 0): it lies 0.6 * 2 - 0.5 above it.
+    assert slab.middle == pytest.approx((2.0 - 0.7 * 0.6, 0.0, -0.7 * 0.8))
+    assert (slab.half_x, slab.half_y) == (4.0, 4.0)
 
 
 def test_every_marker_that_is_shown_has_an_extent_and_words_are_not_empty(predicted: Prediction) -> None:

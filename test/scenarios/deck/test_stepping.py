@@ -19,12 +19,20 @@ LENGTH, STIFFNESS, DAMPING, MOST = 0.5, 200.0, 30.0, 1e3
 
 
 def advanced(
-    step: float, steps: int, start: Any, felt: Any, points: Any, lashings: Any, friction: float, stiffness: float
+    step: float,
+    steps: int,
+    start: Any,
+    felt: Any,
+    points: Any,
+    lashings: Any,
+    friction: float,
+    stiffness: float,
+    inertia: Any = INERTIA,
 ) -> tuple[Any, Any]:
     """The states, loads and times (steps, 15), and which points press and slip (steps, 2 n)."""
     n = len(points)
     contact = friction, 0.0, stiffness, 2.0 * np.sqrt(stiffness * MASS / max(1, n))
-    given = [step, 0.0, MASS, *contact, *INERTIA.ravel(), *np.linalg.inv(INERTIA).ravel()]
+    given = [step, 0.0, MASS, *contact, *inertia.ravel(), *np.linalg.inv(inertia).ravel()]
     rows, marks, work = [0.0] * (15 * FINE * steps), [0] * (2 * n * FINE * steps), [0.0] * (11 * n + 1)
     count = advance(steps, n, given, np.ravel(felt), list(start), np.ravel(points), lashings, work, rows, marks)
     assert count == steps  # nothing strikes
@@ -77,3 +85,20 @@ def test_a_block_slides_with_the_deceleration_of_friction_under_its_whole_weight
     slower = 1.0 - friction * 9.81 * step * steps
     assert rows[-1, 7:10] == pytest.approx([0.6 * slower, -0.8 * slower, 0.0], abs=1e-3)
     assert (marks == 1).all()
+
+
+@pytest.mark.parametrize("across", [0, 1])
+def test_a_plate_on_two_feet_that_hold_tips_over_them_as_a_pendulum_about_its_lower_edge(across: int) -> None:
+    step, steps, stiffness, high, push = 1e-4, 100, 1e6, 0.5, 2.0
+    moments = np.full(3, MASS * high**2 / 6.0)
+    moments[across] *= 2.0  # it is thin this way, and tips so
+    points = np.full((2, 3), -high)
+    points[:, across], points[:, 1 - across] = 0.0, [-high, high]
+    start = [0.0, 0.0, high - MASS * 9.81 / (2.0 * stiffness), 0.0, 0.0, 0.0, 1.0] + [0.0] * 6
+    felt = np.array([0.0, 0.0, -9.81] + [0.0] * 6)
+    felt[across] = push
+    rows, marks = advanced(step, steps, start, [felt] * steps, points, [], 1.0, stiffness, np.diag(moments))
+    about_edge = moments[1 - across] + MASS * high**2
+    faster = push * MASS * high**2 / about_edge * step * steps
+    assert rows[-1, 7 + across] == pytest.approx(faster, rel=1e-3)
+    assert (marks == [1, 1, 0, 0]).all()  # both press, and none slips
