@@ -1,6 +1,7 @@
 """What every test run shares: quick tests first, law code compiled once, ROS graphs that do not see each other."""
 
 import fcntl
+import gc
 import os
 import signal
 import sys
@@ -66,6 +67,12 @@ def compile_once() -> None:
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     # The longest one comes first of the slow ones, so that no worker of a parallel run waits for it at the end.
     items.sort(key=lambda item: (item.get_closest_marker("slow") is not None, item.path.name != LONGEST))
+
+
+def pytest_collection_finish() -> None:
+    """What was loaded to collect thousands of tests stays to the end: the collector need not look at it in each."""
+    gc.collect()
+    gc.freeze()
 
 
 @pytest.fixture

@@ -15,6 +15,7 @@ from command_line import answer_of, invoke
 
 from impact_predictor.bags.read import read_messages
 from impact_predictor.bags.write import BagWriter
+from impact_predictor.calibration import search
 from impact_predictor.calibration.scene_file import NewValues, changed
 from impact_predictor.commands.calibrate import friction_seen
 from impact_predictor.parameters.file import read_values
@@ -149,8 +150,11 @@ def test_what_cannot_be_used_is_told_in_one_sentence(
 
 
 @pytest.mark.slow
-def test_cube_tosses_are_predicted_better_with_what_is_fitted_to_others(tmp_path: Path) -> None:
+def test_cube_tosses_are_predicted_better_with_what_is_fitted_to_others(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """Every third of the tosses, for the time it takes; `python benchmarks/halves.py` fits to halves of them."""
+    monkeypatch.setattr(search, "RESAMPLES", 50)  # no interval is looked at here
     tosses, body = tmp_path / "tosses.mcap", tmp_path / "body.yaml"
     types = {"/cube/odom": ODOMETRY, "/cube/contact_geometry": POLYGON}
     with BagWriter(tosses) as writer:

@@ -64,7 +64,7 @@ WITHOUT_AND_WITH: dict[str, tuple[dict[str, Any], dict[str, Any]]] = {
 
 HEAVY = {"matplotlib", "numba", "pinocchio", "plotly", "rich", "scipy"}
 """Packages whose import takes long, and that a running predictor needs for some features at most."""
-LONGEST = 4 * NANOSECONDS
+LONGEST = 2 * NANOSECONDS
 """Stamps of the last messages: some falls, after a support has been watched for a while."""
 NEEDED = {
     "numba": {"uncertainty", "three dimensions"},

@@ -40,8 +40,9 @@ def impacts(kind):
     """Number in the file, body and twist of each impact of a kind."""
     of_kind = np.flatnonzero(KEPT["kind"] == NAMES.index(kind))
     names = [name for name, values in KEPT.items() if values.dtype in (np.float32, float) and values.ndim == 1]
-    for i in of_kind:
-        given = {name: float(KEPT[name][i]) for name in names}
+    rows = zip(*(KEPT[name][of_kind].tolist() for name in names), strict=True)
+    for i, row in zip(of_kind.tolist(), rows, strict=True):
+        given = dict(zip(names, row, strict=True))
         omega, slip, lift, turning = (given[name] for name in ("omega", "slip", "lift", "turning"))
         ax, ay, anx, any_, bx, by = (given[name] for name in ("ax", "ay", "anx", "any", "bx", "by"))
         ux, uy, wx, wy = (given[name] for name in ("ux", "uy", "wx", "wy"))
@@ -84,12 +85,12 @@ def test_a_body_has_the_impact_that_it_had(kind, law):
         rho = np.sqrt(body.inertia / body.mass)
         uncertain = AGREED + NEAR * (rho / gap) ** 2 + UNCERTAIN.get(kind, 0.0)
         size = speed_of(velocities(body, twist)[0]) + np.abs(kept[:2]).max() + rho * abs(kept[2])
-        assert outcome.twist == pytest.approx(kept, abs=uncertain * size, rel=0.0), i
+        assert np.abs(outcome.twist - kept).max() <= uncertain * size, i
         assert (outcome.mode, outcome.unique) == (KEPT[f"{law}_mode"][i], KEPT[f"{law}_unique"][i]), i
         borders += outcome.flags != KEPT[f"{law}_flags"][i]
         if kind not in STIFF:
             expected = KEPT[f"{law}_impulses"][i].astype(float)
-            assert np.ravel(outcome.impulses) == pytest.approx(expected, abs=SINGLE * np.abs(expected).max()), i
+            assert np.abs(np.ravel(outcome.impulses) - expected).max() <= SINGLE * np.abs(expected).max(), i
     assert borders <= 1  # where the expansion ends by Poisson's rule and by energy at once
 
 
@@ -104,13 +105,13 @@ def test_w_and_c_have_the_impact_that_they_had(kind, law):
         outcome = solve(w, c, *contacts, law)
         speeds = velocities(body, Twist(*KEPT[f"{law}_twist"][i]))[0]
         first = 0 if body.old is not None else 2
-        close = pytest.approx(speeds[first:], abs=2.0 * AGREED * speed_of(c), rel=0.0)
+        wrong = np.abs(np.subtract(outcome.velocities[first:], speeds[first:])).max()
         as_before = (outcome.mode, outcome.unique) == (KEPT[f"{law}_mode"][i], KEPT[f"{law}_unique"][i])
-        lost += outcome.velocities[first:] != close or not as_before
+        lost += not wrong <= 2.0 * AGREED * speed_of(c) or not as_before
         borders += outcome.flags != KEPT[f"{law}_flags_by_w"][i]
         compared += 1
         if kind not in STIFF:
             expected = KEPT[f"{law}_impulses"][i].astype(float)
-            assert np.ravel(outcome.impulses) == pytest.approx(expected, abs=SINGLE * np.abs(expected).max()), i
+            assert np.abs(np.ravel(outcome.impulses) - expected).max() <= SINGLE * np.abs(expected).max(), i
     assert lost <= (LOST * compared if kind in STIFF else 0)
     assert borders <= (LOST * compared if kind in STIFF else 2)

@@ -73,13 +73,13 @@ def dog(tmp_path_factory: pytest.TempPathFactory) -> RobotFiles:
     return RobotFiles(path, FEET)
 
 
-def walked(robot: RobotFiles, ground: SimulatedGround, duration: float = 3.0, **physics: Any) -> Walk:
+def walked(robot: RobotFiles, ground: SimulatedGround, duration: float = 2.0, **physics: Any) -> Walk:
     return walk(Machine(robot, ground, Physics(**physics)), ground, PlannedGait("trot"), duration)
 
 
 @pytest.fixture(scope="module")
 def level(dog: RobotFiles) -> Walk:
-    return walked(dog, SimulatedGround())
+    return walked(dog, SimulatedGround(), 3.0)
 
 
 def test_a_robot_without_a_known_posture_stands_on_bent_legs(dog: RobotFiles) -> None:
@@ -183,6 +183,11 @@ def messages(run: Walk, **sensors: Any) -> dict[str, list[Any]]:
     return read
 
 
+@pytest.fixture(scope="module")
+def ideal(level: Walk) -> dict[str, list[Any]]:
+    return messages(level)
+
+
 def test_a_bag_tells_where_trunk_and_feet_are_and_when_they_are_to_stand(level: Walk) -> None:
     told = messages(level, rate=1000.0)
     assert told[LANDING_TOPIC] == landings_of(level)
@@ -204,14 +209,12 @@ def test_a_bag_tells_where_trunk_and_feet_are_and_when_they_are_to_stand(level: 
     assert np.abs(efforts).max() > 1.0
 
 
-def test_feet_by_their_names_have_velocities_and_forces_too(level: Walk) -> None:
-    by_order, by_name = messages(level), messages(level, by_names=True)
+def test_feet_by_their_names_have_velocities_and_forces_too(level: Walk, ideal: dict[str, list[Any]]) -> None:
+    by_name = messages(level, by_names=True)
     assert "contact_geometry" not in by_name
-    assert "feet_states" not in by_order
+    assert "feet_states" not in ideal
     total = []
-    for geometry, feet, sample in zip(
-        by_order["contact_geometry"], by_name["feet_states"], by_name["odom"], strict=True
-    ):
+    for geometry, feet, sample in zip(ideal["contact_geometry"], by_name["feet_states"], by_name["odom"], strict=True):
         assert feet.names == FEET
         assert np.array(feet.positions) == pytest.approx(np.array(geometry.points), abs=1e-6)
         total.append(sum(to_world(axes_of(sample.orientation), force)[2] for force in feet.forces))
@@ -219,7 +222,7 @@ def test_feet_by_their_names_have_velocities_and_forces_too(level: Walk) -> None
 
 
 def test_the_heights_of_blocks_are_told_where_the_feet_come_to_stand(dog: RobotFiles) -> None:
-    run = walked(dog, blocks(0.03, 2), 4.0)
+    run = walked(dog, blocks(0.03, 2), 3.0)
     (terrain,) = messages(run)["terrain"]
     feet = run.states(np.array([run.duration])).points.reshape(-1, 3)
     heights = []
@@ -240,8 +243,8 @@ def test_the_velocities_of_the_feet_are_theirs_against_the_trunk(level: Walk) ->
     assert wrong.max() < 0.2
 
 
-def test_late_feet_are_those_of_earlier_and_a_height_drifts(level: Walk) -> None:
-    ideal, late = messages(level), messages(level, delay=0.005, drift=0.01)
+def test_late_feet_are_those_of_earlier_and_a_height_drifts(level: Walk, ideal: dict[str, list[Any]]) -> None:
+    late = messages(level, delay=0.005, drift=0.01)
     for before, after in zip(ideal["contact_geometry"][:-2], late["contact_geometry"][2:], strict=True):
         assert after.points == before.points
         assert after.stamp == before.stamp + 5_000_000
@@ -249,8 +252,9 @@ def test_late_feet_are_those_of_earlier_and_a_height_drifts(level: Walk) -> None
         assert after.position[2] - before.position[2] == pytest.approx(0.01 * before.stamp * 1e-9)
 
 
-def test_noise_has_the_deviations_that_are_asked_for_and_a_seed_makes_it(level: Walk) -> None:
-    ideal = messages(level)
+def test_noise_has_the_deviations_that_are_asked_for_and_a_seed_makes_it(
+    level: Walk, ideal: dict[str, list[Any]]
+) -> None:
     noisy, again, other = (messages(level, position=1e-3, velocity=0.02, seed=seed) for seed in (1, 1, 2))
     assert noisy == again
     assert noisy["odom"] != other["odom"]
