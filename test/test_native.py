@@ -15,8 +15,7 @@ from typing import Any
 import numpy as np
 import pytest
 from click.testing import CliRunner
-from recordings import first_messages, write_mcap
-from rosbags.rosbag1 import Reader, Writer
+from recordings import first_messages, write_mcap, write_plan
 
 from impact_predictor import native, solve_impact
 from impact_predictor.cli import main
@@ -99,13 +98,7 @@ def tosses(path: Path) -> Path:
 
 
 def plan(path: Path) -> Path:
-    """The walk of HyQ and its change to a trot: the first 4 s."""
-    with Reader(ROOT / "examples/hyq/hyq.bag") as reader, Writer(path / "plan.bag") as writer:
-        (one,) = [one for one in reader.connections if one.topic == "/xpp/state_des"]
-        written = writer.add_connection(one.topic, one.msgtype, msgdef=one.msgdef.data, md5sum=one.digest)
-        for _, stamp, data in reader.messages([one], stop=4 * 10**9):
-            writer.write(written, stamp, data)
-    return path / "plan.bag"
+    return write_plan(path / "plan.bag", 4.0)
 
 
 def simulated(path: Path, *options: str) -> Path:

@@ -9,6 +9,7 @@ from pathlib import Path
 from mcap.writer import CompressionType, IndexType
 from mcap.writer import Writer as McapWriter
 from rosbags.interfaces import Connection
+from rosbags.rosbag1 import Reader as Ros1Reader
 from rosbags.rosbag1 import Writer as Ros1Writer
 from rosbags.rosbag2 import StoragePlugin, Writer
 from rosbags.rosbag2.enums import CompressionFormat, CompressionMode
@@ -38,6 +39,16 @@ def write_bag(path: Path, messages: Iterable[BagMessage], types: Mapping[str, st
     with BagWriter(path) as writer:
         for topic, log_time, data in messages:
             writer.write(topic, types[topic], log_time, data)
+    return path
+
+
+def write_plan(path: Path, seconds: float) -> Path:
+    """The first seconds of the plan of HyQ: up to 4 s it walks and changes to a trot."""
+    with Ros1Reader(RECORDED.parents[1] / "hyq/hyq.bag") as reader, Ros1Writer(path) as writer:
+        (one,) = [one for one in reader.connections if one.topic == "/xpp/state_des"]
+        written = writer.add_connection(one.topic, one.msgtype, msgdef=one.msgdef.data, md5sum=one.digest)
+        for _, stamp, data in reader.messages([one], stop=round(seconds * 1e9)):
+            writer.write(written, stamp, data)
     return path
 
 

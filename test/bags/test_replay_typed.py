@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 import pytest
 from mcap.reader import make_reader
-from recordings import first_messages, write_bag
+from recordings import first_messages, write_bag, write_plan
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 from test_replay_deck import CARGO, TYPES, recorded
 
@@ -79,8 +79,9 @@ def tosses(tmp_path_factory: pytest.TempPathFactory) -> Both:
 
 @pytest.fixture(scope="module")
 def robot(tmp_path_factory: pytest.TempPathFactory) -> Both:
+    folder = tmp_path_factory.mktemp("robot")
     scenes = read_scenes(find("config/walker_hyq.yaml"))
-    return both(tmp_path_factory.mktemp("robot"), find("examples/hyq/hyq.bag"), scenes)
+    return both(folder, write_plan(folder / "plan.bag", 4.0), scenes)
 
 
 @pytest.fixture(scope="module")

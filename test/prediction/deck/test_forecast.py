@@ -36,8 +36,7 @@ def outlooks(samples: list[Sample], every: int) -> Iterator[tuple[int, DeckOutlo
     deck.learn()
     for number, sample in enumerate(samples):
         deck.update(sample)
-        outlook = deck.outlook(10.0)
-        if outlook.is_learnt and number % every == 0:
+        if number % every == 0 and (outlook := deck.outlook(10.0)).is_learnt:
             yield number, outlook
 
 
