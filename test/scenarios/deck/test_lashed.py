@@ -4,6 +4,7 @@ watch tells: two ways to the list at which a unit moves, that share no line.
 
 from __future__ import annotations
 
+from functools import cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -60,10 +61,18 @@ def told(scene: Scene, angle: float) -> Told:
     return Told(float(margins.slide.max()), float(margins.tip.max()))
 
 
+ANGLES = np.linspace(0.0, 1.5, 301)
+
+
+@cache
+def used_at(scene: Scene) -> list[float]:
+    """The part of its margins that a unit uses at each of the ANGLES."""
+    return [max(told(scene, angle)) for angle in ANGLES]
+
+
 def list_for(scene: Scene, used: float) -> float:
     """The list in rad at which this part of a margin is used."""
-    angles = np.linspace(0.0, 1.5, 301)
-    return float(np.interp(used, [max(told(scene, angle)) for angle in angles], angles))
+    return float(np.interp(used, used_at(scene), ANGLES))
 
 
 def listing(angle: float) -> DeckMotion:
