@@ -119,12 +119,12 @@ UNIT = Scene(
 
 
 def watched(scene: Scene, scatter: float = 0.0) -> tuple[int, int, tuple[str, ...]]:
-    """Errors and announcements of a unit that stands on a noisy deck for two minutes, and what is doubted; its height
+    """Errors and announcements of a unit that stands on a noisy deck for a minute, and what is doubted; its height
     scatters by so many m.
     """
     monitor, errors, announced, rng = Monitor({"": scene}), 0, 0, np.random.default_rng(1)
-    exact = samples(1.5, 0.0, 120.0)
-    for (sample, _), (true, _) in zip(samples(1.5, NOISE, 120.0), exact, strict=True):
+    exact = samples(1.5, 0.0, 60.0)
+    for (sample, _), (true, _) in zip(samples(1.5, NOISE, 60.0), exact, strict=True):
         monitor.update_support(sample)
         s = 2.0 * true.orientation[0] * true.orientation[3]
         y, z = UNIT.place[1:]
