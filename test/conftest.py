@@ -20,7 +20,7 @@ settings.register_profile("search")
 settings.register_profile("repeatable", derandomize=True)
 settings.load_profile("repeatable")
 
-LONGEST = "test_heavy_sea.py"
+LONGEST = ("test_heavy_sea.py", "test_features.py", "test_cli_calibrate.py")
 
 
 def pytest_configure() -> None:
@@ -65,8 +65,8 @@ def compile_once() -> None:
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    # The longest one comes first of the slow ones, so that no worker of a parallel run waits for it at the end.
-    items.sort(key=lambda item: (item.get_closest_marker("slow") is not None, item.path.name != LONGEST))
+    # The longest ones come first of the slow ones, so that no worker of a parallel run waits for one at the end.
+    items.sort(key=lambda item: (item.get_closest_marker("slow") is not None, item.path.name not in LONGEST))
 
 
 def pytest_collection_finish() -> None:
