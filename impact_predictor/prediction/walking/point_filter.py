@@ -19,7 +19,7 @@ LEAST_SNAP, MOST_SNAP = 1e3, 3e8
 TURN: Final = 2.5e5  # variance of how the jerk changes at the highest place
 ADAPTS: Final = 0.08  # ... by this part with each measurement
 OUTLIER: Final = 3.0  # a point moves otherwise than before when a measurement is off by so many standard deviations
-Rows = tuple[Cubic, Cubic, Cubic, Cubic]
+FilterRows = tuple[Cubic, Cubic, Cubic, Cubic]
 LASTS: Final = 2520.0  # a cubic is followed until it is off by the root of a tenth of so many variances of a gap
 
 
@@ -42,7 +42,7 @@ class PointFilter:
         if frame.rate is not None and frame.velocity is not None:
             speed, rates = noise.rate**2, (frame.rate, *frame.velocity)
         gap, along, across, up = zip((frame.gap, *frame.position), rates, (0.0,) * 4, (0.0,) * 4, strict=True)
-        self.rows: Rows = gap, along, across, up
+        self.rows: FilterRows = gap, along, across, up
         """Value, rate, acceleration and jerk of the gap, and of each coordinate."""
         self.covariance: Triangle = (noise.gap**2, 0.0, speed, 0.0, 0.0, acceleration, 0.0, 0.0, 0.0, jerk)
 
@@ -122,7 +122,7 @@ class PointFilter:
         )
         return surprise
 
-    def _carried(self, time: float) -> Rows:
+    def _carried(self, time: float) -> FilterRows:
         gap, along, across, up = self.rows
         return carried(gap, time), carried(along, time), carried(across, time), carried(up, time)
 
