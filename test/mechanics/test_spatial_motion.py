@@ -426,6 +426,50 @@ def test_of_bodies_that_nearly_lie_flat_none_takes_more_than_600_steps(steps: li
     assert most < 600
 
 
+# A long body that hangs over: on its corner it is 50 times as light one way along the support as the other.
+SLENDER = (
+    (-0.6549, 0.0208, 0.1121, 0.7471),
+    (0.0019, 1.5646, -0.0794),
+    (0.0, 0.0, 0.0),
+    (0.006667, 0.336667, 0.336667, 0.0, 0.0, 0.0),
+    [(1.1039, 0.0753, -0.0907), (0.1039, 1.0753, -0.0907), (-0.8961, 0.0753, -0.0907), (0.1039, -0.9247, -0.0907)],
+    1,
+    0.1,
+)
+# A column that falls over one corner, whose slip has come to its end before.
+COLUMN = (
+    (-0.1665, 0.1665, 0.6872, 0.6872),
+    (-0.0012, 0.5383, -0.0047),
+    (0.0298, 0.0217, 0.0),
+    (0.086667, 0.096667, 0.016667, 0.0, 0.0, 0.0),
+    [(0.2, 0.0, -0.5), (0.0, 0.2, -0.5), (-0.2, 0.0, -0.5), (0.0, -0.2, -0.5)],
+    0,
+    0.3,
+)
+
+
+# By Newton's and Euler's laws and Radau's method, with friction against slip / hypot(slip, 1e-6 m/s) that never sticks.
+@pytest.mark.parametrize(
+    ("body", "point", "time"), [(SLENDER, 0, 0.2978897), (COLUMN, 3, 0.4747278)], ids=["slender", "column"]
+)
+def test_a_corner_that_sticks_begins_to_slip_as_smoothed_friction_says_whichever_way_it_is_turned_and_nudged(
+    body: Any, point: int, time: float, steps: list[float]
+) -> None:
+    pose, spin, slip, inertia, points, corner, friction = body
+    draw = random.Random(8)
+    for _ in range(8):
+        turn = Rotation.from_rotvec([0.0, 0.0, draw.uniform(-3.0, 3.0)])
+        turned = turn * Rotation.from_quat(pose)
+        arm, w = turned.apply(points[corner]), turn.apply(spin) + vector(draw, 1e-13)
+        v = turn.apply(slip) - np.cross(w, arm)
+        start = SpatialState((0.0, 0.0, -arm[2]), turned.as_quat(), v, w)
+        steps.clear()
+        found = fall(start, inertia, points, (corner,), friction)
+        assert found.point == point
+        assert found.time == pytest.approx(time, abs=3.0 * TIME)
+        assert len(steps) < 150
+
+
 # The times are those of thousands of steps, without the limit on their number.
 @pytest.mark.parametrize(
     ("across", "lean", "spin", "slip", "corner", "time"),

@@ -11,7 +11,23 @@ from math import sqrt
 from typing import TYPE_CHECKING, Final
 
 from .reactions import CREEPS, OPEN, SLIPS, STICKS, derive, hold, locate, rates
-from .stances import NONE, ROUNDING, SLOW, change, creep, head, margins, near, settle, stand, stays, steady, stop, veers
+from .stances import (
+    NONE,
+    ROUNDING,
+    SLOW,
+    change,
+    creep,
+    head,
+    margins,
+    near,
+    settle,
+    stand,
+    stays,
+    steady,
+    stiff,
+    stop,
+    veers,
+)
 
 if TYPE_CHECKING:
     from ..compiled import Count, Floats
@@ -55,8 +71,9 @@ _MOMENT: Final = 1e-3
 """Relative to the time scale of the motion."""
 _LONGER: Final = 8.0
 """Each time that a motion is stuck, its points are held so many times longer."""
-_BLEND: Final = 0.5
-"""Of the speed that its friction takes in a step is blended with the slip of a creeping point."""
+_BLEND: Final = 0.35
+"""Of the speed that friction takes in a step is blended with the slip of a creeping point; directions are unstable
+below 0.3, and lag the more above."""
 _POOR: Final = 4.0
 """Error of a step that is cut, relative to the tolerance, that is too much."""
 _GAP: Final = 1e-8
@@ -218,10 +235,10 @@ def follow(
         h = min(h, left, steady(y, model, stance))
         if turn * h > _TURN:
             h = _TURN / turn
-        for slot in range(held[n]):
-            if label[held[slot]] == CREEPS and scale[3] != _BLEND * h * weight:
-                scale[3] = _BLEND * h * weight
-                rates(time, y, k, 0, False, model, stance)
+        blend = _BLEND * h * stiff(CREEPS, model, stance)
+        if blend > 0.0 and scale[3] != blend:
+            scale[3] = blend
+            rates(time, y, k, 0, False, model, stance)
         error, jam = step(time, h, y, k, trial, model, stance)
         small = h <= 1e-6 * sqrt(size / weight)
         if not small and veers(trial, h, model, stance):

@@ -12,8 +12,8 @@ point's own force is what its acceleration a = b + W F asks for.
 `model` is (points, body, pull, friction, scale): points (3 n) from the mass centre in body axes; body: six elements
 xx yy zz xy xz yz of the inertia, six of its inverse, and 1 where it is the same about all axes; pull: gravity felt at
 the frame's origin, its growth per second, angular velocity and acceleration of the frame, and 1 where it turns;
-friction (n); scale: size, speed and acceleration of the motion, and the speed, over the friction, with which the slip
-of a creeping point is blended with its direction before.
+friction (n); scale: size, speed and acceleration of the motion, and the speed along its direction before that is
+blended with the slip of a creeping point.
 
 `stance` is (held, label, toward, forces, arms, blocks, frame, rows). held: indices of the points that stand, and at its
 end their number; label (n): OPEN, STICKS, SLIPS or CREEPS; toward (2 n): direction of a slip; forces (3 n), kept from
@@ -205,7 +205,7 @@ def drag(y: Floats, i: Count, model: Model, stance: Stance) -> tuple[float, floa
     sx = y[7] + y[11] * arms[3 * i + 2] - y[12] * arms[3 * i + 1]
     sy = y[8] + y[12] * arms[3 * i] - y[10] * arms[3 * i + 2]
     if label[i] == CREEPS:
-        sx, sy = sx + friction[i] * scale[3] * dx, sy + friction[i] * scale[3] * dy
+        sx, sy = sx + scale[3] * dx, sy + scale[3] * dy
     slip = sqrt(sx * sx + sy * sy)
     if sx * dx + sy * dy > 0.0:
         dx, dy = sx / slip, sy / slip

@@ -19,7 +19,7 @@ _SLIP: Final = 1e-7
 """How near to its zero an event is found, relative to the scales. Forces are continuous there."""
 _ALIKE: Final = 10.0
 """Factor on these within which the events of several points are one."""
-_VEERS: Final = 1e-4
+_VEERS: Final = 1e-5
 """Error in a step, relative to the scale of speeds, by the direction of a creeping point's friction, which lags."""
 SLOW: Final = 1e-3
 """Relative to the scale of speeds: a slower slip creeps."""
@@ -201,17 +201,32 @@ def veers(y: Floats, h: float, model: Model, stance: Stance) -> bool:
 
 def steady(y: Floats, model: Model, stance: Stance) -> float:
     """The longest step in which the directions of slips stay stable: small against slip over friction."""
-    friction, scale = model[3], model[4]
-    held, label, forces, arms, blocks = stance[0], stance[1], stance[3], stance[4], stance[5]
-    least, most = _LONG * scale[1], 0.0
+    held, label, arms = stance[0], stance[1], stance[4]
+    least = _LONG * model[4][1]
     for slot in range(held[len(label)]):
         i = held[slot]
         if label[i] == SLIPS:
             sx = y[7] + y[11] * arms[3 * i + 2] - y[12] * arms[3 * i + 1]
             sy = y[8] + y[12] * arms[3 * i] - y[10] * arms[3 * i + 2]
             least = min(least, sqrt(sx * sx + sy * sy))
-            most += friction[i] * abs(forces[3 * i + 2]) * max(blocks[12 * i], blocks[12 * i + 1])
-    return _STEADY * least / (most + _TINY)
+    return _STEADY * least / (stiff(SLIPS, model, stance) + _TINY)
+
+
+def stiff(kind: int, model: Model, stance: Stance) -> float:
+    """The acceleration along the support that friction gives points of a kind at most, in m/s^2.
+
+    A slender body is far lighter in one direction at a point than in others, so its weight alone does not tell it.
+    """
+    friction = model[3]
+    held, label, forces, blocks = stance[0], stance[1], stance[3], stance[5]
+    most = 0.0
+    for slot in range(held[len(label)]):
+        i = held[slot]
+        if label[i] == kind:
+            xx, yy, xy = blocks[12 * i], blocks[12 * i + 1], blocks[12 * i + 3]
+            largest = 0.5 * (xx + yy + sqrt((xx - yy) * (xx - yy) + 4.0 * xy * xy))
+            most += friction[i] * abs(forces[3 * i + 2]) * largest
+    return most
 
 
 def creep(y: Floats, stance: Stance) -> float:
