@@ -470,6 +470,18 @@ def test_a_corner_that_sticks_begins_to_slip_as_smoothed_friction_says_whichever
         assert len(steps) < 150
 
 
+# The time is that of smoothed friction again. Both ends of the upper edge touch down together.
+def test_two_corners_whose_slip_comes_to_its_end_turn_each_its_friction_with_its_slip() -> None:
+    a, b, c = 0.04, 0.06, 0.0623
+    box = list(product((-a, a), (-b, b), (-c, c)))
+    pose = Rotation.from_rotvec([0.0, 0.0, 0.34]) * Rotation.from_rotvec([-0.075, 0.0, 0.0])
+    start = SpatialState((0.0, 0.0, -pose.apply(box[2])[2]), pose.as_quat(), (-4e-4, -9e-4, -3.3e-4), (0.0, 0.0, 0.0))
+    inertia = ((b * b + c * c) / 3.0, (a * a + c * c) / 3.0, (a * a + b * b) / 3.0, 0.0, 0.0, 0.0)
+    found = fall(start, inertia, box, (6, 2), 0.17)
+    assert found.point in (0, 4)
+    assert found.time == pytest.approx(0.0415742326, abs=TIME)
+
+
 # The times are those of thousands of steps, without the limit on their number.
 @pytest.mark.parametrize(
     ("across", "lean", "spin", "slip", "corner", "time"),

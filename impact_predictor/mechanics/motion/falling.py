@@ -280,7 +280,7 @@ def follow(
             for slot in range(held[n]):
                 if label[held[slot]] >= SLIPS:
                     head(y, held[slot], model, stance)
-                    scale[3] = scale[1]
+            scale[3] = scale[1]  # not before the last has its direction from the blend of this step
             h = longer
             margins(y, model, stance, before)
             continue
