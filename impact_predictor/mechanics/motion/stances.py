@@ -212,7 +212,7 @@ def steady(y: Floats, model: Model, stance: Stance) -> float:
     return _STEADY * least / (stiff(SLIPS, model, stance) + _TINY)
 
 
-def stiff(kind: int, model: Model, stance: Stance) -> float:
+def stiff(kind: Count, model: Model, stance: Stance) -> float:
     """The acceleration along the support that friction gives points of a kind at most, in m/s^2.
 
     A slender body is far lighter in one direction at a point than in others, so its weight alone does not tell it.
