@@ -69,6 +69,13 @@ def test_a_dip_below_tangents_that_meet_above_zero_is_where_its_cubic_is_lowest(
     assert found == pytest.approx(0.7) if lowest < 0.0 else found > 1.0
 
 
+@pytest.mark.parametrize("slope", [-1e-300, -1e-20, -1e-12])
+def test_a_dip_of_which_the_beginning_is_all_but_level_is_where_its_cubic_is_lowest(slope: float) -> None:
+    # value - 6 s^2 + 6 s^3 is lowest at 2/3, 8/9 below its ends.
+    assert dip(0.8, slope, 0.8, 6.0) == pytest.approx(2.0 / 3.0)
+    assert dip(0.9, slope, 0.9, 6.0) > 1.0
+
+
 def test_three_samples_may_hide_a_fall_where_their_parabola_has_one() -> None:
     # (s - 0.4)^2 - 0.01 at 0, 1/2 and 1 is positive at the ends alone; with 0.01 more everywhere, it touches zero.
     assert may_fall(0.15, 0.0, 0.35)

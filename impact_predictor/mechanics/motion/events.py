@@ -149,7 +149,9 @@ def dip(value: float, slope: float, end_value: float, end_slope: float) -> float
         return at
     rise = end_value - value
     square, cube = 3.0 * rise - 2.0 * slope - end_slope, slope + end_slope - 2.0 * rise
-    at = -slope / (square + math.sqrt(square * square - 3.0 * slope * cube))
+    root = math.sqrt(max(0.0, square * square - 3.0 * slope * cube))
+    # Of both forms of where its slope is zero and grows, the one in which nothing cancels.
+    at = -slope / (square + root) if square > 0.0 else (root - square) / (3.0 * cube)
     return at if value + at * (slope + at * (square + at * cube)) <= 0.0 else _BEYOND
 
 
