@@ -10,8 +10,6 @@ from impact_predictor.calibration.fit import NEEDED, Calibration, calibrate
 from impact_predictor.calibration.solver import Coefficients
 from impact_predictor.errors import InputError
 
-pytestmark = pytest.mark.usefixtures("few_resamples")
-
 
 def holds(calibration: Calibration, truth: Coefficients) -> list[bool]:
     """Whether each interval holds the truth."""
