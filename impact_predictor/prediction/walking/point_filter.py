@@ -19,8 +19,10 @@ LEAST_SNAP, MOST_SNAP = 1e3, 3e8
 TURN: Final = 2.5e5  # variance of how the jerk changes at the highest place
 ADAPTS: Final = 0.08  # ... by this part with each measurement
 OUTLIER: Final = 3.0  # a point moves otherwise than before when a measurement is off by so many standard deviations
-FilterRows = tuple[Cubic, Cubic, Cubic, Cubic]
 LASTS: Final = 2520.0  # a cubic is followed until it is off by the root of a tenth of so many variances of a gap
+
+FilterRows = tuple[Cubic, Cubic, Cubic, Cubic]
+"""Value, rate, acceleration and jerk of a gap, and of each coordinate."""
 
 
 class PointFilter:
@@ -43,7 +45,6 @@ class PointFilter:
             speed, rates = noise.rate**2, (frame.rate, *frame.velocity)
         gap, along, across, up = zip((frame.gap, *frame.position), rates, (0.0,) * 4, (0.0,) * 4, strict=True)
         self.rows: FilterRows = gap, along, across, up
-        """Value, rate, acceleration and jerk of the gap, and of each coordinate."""
         self.covariance: Triangle = (noise.gap**2, 0.0, speed, 0.0, 0.0, acceleration, 0.0, 0.0, 0.0, jerk)
 
     def add(self, frame: PointFrame, noise: GapNoise, learns: bool = True) -> None:
@@ -72,7 +73,7 @@ class PointFilter:
 
     def motion(self, time: float) -> tuple[Vector3, Vector3]:
         """Position (m) and velocity (m/s) of the point `time` s after the last frame."""
-        _, along, across, up = self._carried(time)
+        gap, along, across, up = self._carried(time)
         return (along[0], across[0], up[0]), (along[1], across[1], up[1])
 
     def span(self, noise: GapNoise) -> float:
