@@ -12,11 +12,13 @@ from bodies_in_space import ALIKE, CUBE, MASS, MERGE, PULL, RESTITUTION, SLOW, S
 from newton_in_space import tensor
 from scipy.spatial.transform import Rotation
 
+from impact_predictor.mechanics.compiled import without_numba
 from impact_predictor.mechanics.impact.spatial import Body, ContactPoints, solve_spatial_impacts
+from impact_predictor.mechanics.impact.spatial_body import BODY, CONTACT
 from impact_predictor.mechanics.motion.spatial import SpatialState
 from impact_predictor.mechanics.types import ContactState, Flag, Mode
 from impact_predictor.prediction import spatial_impact
-from impact_predictor.prediction.drawn import over
+from impact_predictor.prediction.drawn import over, spread
 from impact_predictor.prediction.predictor import Predictor
 from impact_predictor.prediction.scene import Scene
 from impact_predictor.prediction.types import Covariance, Sample, Touchdown
@@ -51,6 +53,35 @@ def spread_by(deviation: float) -> tuple[float, ...]:
 def test_what_is_known_with_a_deviation_is_above_zero_with_the_probability_of_the_normal_distribution() -> None:
     for mean in (-0.3, 0.0, 0.1, 0.4):
         assert over(mean, 0.2) == pytest.approx(1.0 - NormalDist(mean, 0.2).cdf(0.0), rel=1e-12)
+
+
+@pytest.mark.parametrize("turns", [True, False])
+@pytest.mark.parametrize("deviations", [(0.2, 0.5, 1e-3), (0.2, 0.0, 1e-3), (0.0, 0.5, 0.0), (0.0, 0.0, 1e-3)])
+def test_a_draw_moves_all_that_is_uncertain_and_its_gaps_count_from_the_first_that_closes(
+    turns: bool, deviations: tuple[float, float, float]
+) -> None:
+    n, standing, count, rng = 4, 1, 50, np.random.default_rng(5)
+    problem, rates = rng.uniform(0.1, 0.9, BODY + n * CONTACT), -rng.uniform(0.5, 1.5, n - standing)
+    turning = rng.normal(size=(6, 6)) if turns else np.empty((0, 0))
+    friction, restitution, gap = deviations
+    of_contacts, of_gaps = friction > 0.0 or restitution > 0.0, gap > 0.0
+    points = rng.normal(size=(len(turning) + 2 * of_contacts + (n - standing) * of_gaps, count))
+    found = np.empty((count, len(problem)))
+    without_numba(spread)(n, standing, problem, turning, points, np.array((*deviations, *rates)), found)
+
+    expected = np.tile(problem, (count, 1))
+    contacts = expected[:, BODY:].reshape(count, n, CONTACT)
+    if turns:
+        expected[:, 7:13] += (turning @ points[:6]).T
+    if of_contacts:
+        mu, e = points[len(turning) : len(turning) + 2]
+        contacts[:, :, 6] = np.maximum(0.0, contacts[:, :, 6] + friction * mu[:, None])
+        contacts[:, :, 7] = np.clip(contacts[:, :, 7] + restitution * e[:, None], 0.0, 1.0)
+    if of_gaps:
+        moved = contacts[:, standing:, 11] + gap * points[-(n - standing) :].T
+        closing = moved / -rates
+        contacts[:, standing:, 11] = (closing - closing.min(axis=1, keepdims=True)) * -rates
+    assert np.array(found) == pytest.approx(expected, abs=1e-12)
 
 
 @pytest.mark.parametrize("seed", range(8))
