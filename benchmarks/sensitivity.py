@@ -22,7 +22,7 @@ from impact_predictor.bags.read import read_messages
 from impact_predictor.prediction.course import Pose
 from impact_predictor.prediction.predictor import Predictor
 from impact_predictor.prediction.scene import Scene, inertia_matrix, read_scenes
-from impact_predictor.prediction.score import SpatialScore
+from impact_predictor.prediction.spatial_score import SpatialScore
 from impact_predictor.prediction.types import Geometry, Sample, Touchdown
 from impact_predictor.prediction.vectors import add, axes_of, to_world
 from impact_predictor.ros.messages import ODOMETRY, POLYGON, decode_odometry, decode_polygon

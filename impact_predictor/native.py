@@ -25,10 +25,10 @@ _COMPILED = {
         "engine equations events falling felt integrate phases pivot reactions slip spatial spatial_problem stances"
     ),
     "prediction": (
-        "checks course cylinder drawn impact motion_recorder planar points predictor recorded scatter spatial "
-        "spatial_impact vectors"
+        "checks course cylinder drawn foot impact motion_recorder planar points predictor recorded scatter score "
+        "spatial spatial_impact vectors"
     ),
-    "prediction.deck": "frame motion window",
+    "prediction.deck": "frame motion tracker window",
     "prediction.walking": (
         "announcement base braking clock cubic descent doubts feet forces ground impact landings machine point_filter "
         "rest rhythm schedule stance terrain trajectory"

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from ..prediction.course import between
 from ..prediction.scene import Scene
-from ..prediction.score import SpatialScore
+from ..prediction.spatial_score import SpatialScore
 from ..prediction.types import Score, SpatialTwist
 from ..prediction.vectors import axes_of, cross, times
 from .motions import SAME, Reals

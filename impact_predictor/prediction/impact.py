@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import cache
 from math import hypot
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import TYPE_CHECKING, Final
 
 from ..mechanics.impact import solve_impact
 from ..mechanics.motion import Fall
@@ -31,7 +31,7 @@ SLOWEST: Final = 4.0
 """An impact can be told from rest when it approaches this many times faster than gravity moves it in a contact time."""
 
 
-class Collision(NamedTuple):
+class Collision:
     """The collision that a sample shows to be ahead, before its impact.
 
     `body` and its twist `before` are those of the impact, in the impact plane, and `across` is the motion across it:
@@ -41,16 +41,22 @@ class Collision(NamedTuple):
     of the touchdown.
     """
 
-    contacts: ActiveContacts
-    plane: ImpactPlane
-    body: TwoPointBody
-    before: Twist
-    across: Vector3
-    shift: Vector
-    angle: float
-    lead_time: float
-    measured: float
-    speed: float
+    def __init__(
+        self,
+        contacts: ActiveContacts,
+        plane: ImpactPlane,
+        body: TwoPointBody,
+        before: Twist,
+        across: Vector3,
+        shift: Vector,
+        angle: float,
+        lead_time: float,
+        measured: float,
+        speed: float,
+    ) -> None:
+        self.contacts, self.plane, self.body, self.before, self.across = contacts, plane, body, before, across
+        self.shift, self.angle, self.lead_time, self.measured = shift, angle, lead_time, measured
+        self.speed = speed
 
 
 def collision_after(

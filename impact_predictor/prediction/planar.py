@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from math import copysign, hypot, inf, sqrt
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import TYPE_CHECKING, Final
 
 from ..mechanics.impact.answer import mode_of
 from ..mechanics.impact.solve import MODES
@@ -39,26 +39,30 @@ TINY: Final = 1e-100  # below it the square of a length or of a speed has lost i
 GRAZES: Final = 1e-9  # m/s: what reaches the support slower only grazes it
 
 
-class Posture(NamedTuple):
+class Posture:
     """A sample over the support: its axes in the world frame; in the body frame the support normal, the velocity of
     the mass centre; and of each point the gap (m) and its rate (m/s).
     """
 
-    axes: tuple[Vector3, Vector3, Vector3]
-    normal: Vector3
-    velocity: Vector3
-    gaps: list[float]
-    rates: list[float]
+    def __init__(
+        self,
+        axes: tuple[Vector3, Vector3, Vector3],
+        normal: Vector3,
+        velocity: Vector3,
+        gaps: list[float],
+        rates: list[float],
+    ) -> None:
+        self.axes, self.normal, self.velocity, self.gaps, self.rates = axes, normal, velocity, gaps, rates
 
 
-class ActiveContacts(NamedTuple):
+class ActiveContacts:
     """The points that stand, and those that strike next together."""
 
-    old: tuple[int, ...]
-    new: tuple[int, ...]
+    def __init__(self, old: tuple[int, ...], new: tuple[int, ...]) -> None:
+        self.old, self.new = old, new
 
 
-class ImpactPlane(NamedTuple):
+class ImpactPlane:
     """The impact plane, in the body frame or in another, and the body in it.
 
     `axis`, `ahead` (d) and `normal` (n) are unit vectors; `old` (None in flight) and `new` the contacts from the mass
@@ -66,16 +70,22 @@ class ImpactPlane(NamedTuple):
     `lateral` velocity (m/s) and `offset` of the contacts along the axis (m).
     """
 
-    axis: Vector3
-    ahead: Vector3
-    normal: Vector3
-    old: Vector | None
-    new: Vector
-    twist: Twist
-    gravity: Vector3
-    off_axis: float
-    lateral: float
-    offset: float
+    def __init__(
+        self,
+        axis: Vector3,
+        ahead: Vector3,
+        normal: Vector3,
+        old: Vector | None,
+        new: Vector,
+        twist: Twist,
+        gravity: Vector3,
+        off_axis: float,
+        lateral: float,
+        offset: float,
+    ) -> None:
+        self.axis, self.ahead, self.normal, self.old, self.new = axis, ahead, normal, old, new
+        self.twist, self.gravity = twist, gravity
+        self.off_axis, self.lateral, self.offset = off_axis, lateral, offset
 
     @property
     def half_distance(self) -> float:
@@ -179,7 +189,7 @@ def plane_of(
     gravity: Vector3 | None = None,
 ) -> ImpactPlane:
     """The impact plane of a posture's contacts; `gravity` in the frame of the sample is the scene's unless given."""
-    (old, new), center = contacts, scene.center_of_mass
+    old, new, center = contacts.old, contacts.new, scene.center_of_mass
     struck = add(mean([points[i] for i in new]), center, -1.0)
     stood = add(mean([points[i] for i in old]), center, -1.0) if old else None
     edge = edge_of([points[i] for i in old]) if len(old) > 1 else None

@@ -22,13 +22,13 @@ from .types import (
     Sample,
     Score,
     Status,
+    SupportTracker,
     Terrain,
     Touchdown,
     Vector3,
 )
 
 if TYPE_CHECKING:
-    from .deck.tracker import Deck
     from .frames import FrameTree
     from .recorded import Announced
     from .walking.clock import Delay
@@ -149,7 +149,7 @@ class Predictor:
         InputError: there are no contacts for the scene: edges that do not carry a cylinder, a robot without a model.
     """
 
-    def __init__(self, scene: Scene, deck: Deck | None = None, tree: FrameTree | None = None) -> None:
+    def __init__(self, scene: Scene, deck: SupportTracker | None = None, tree: FrameTree | None = None) -> None:
         self.contacts = contacts_for(scene)
         self.scene = self.contacts.scene
         self._deck = deck

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections import deque
-from dataclasses import dataclass
 from itertools import pairwise
 from typing import Final, NamedTuple
 
@@ -41,15 +40,13 @@ NEAR: Final = 1.2
 """Frames that a touchdown may come earlier or later than it was predicted."""
 
 
-class Frame(NamedTuple):
+class Frame:
     """A sample of a stamp in ns, and its posture over the support."""
 
-    stamp: int
-    sample: Sample
-    posture: Posture
+    def __init__(self, stamp: int, sample: Sample, posture: Posture) -> None:
+        self.stamp, self.sample, self.posture = stamp, sample, posture
 
 
-@dataclass(eq=False)
 class RecordedTouchdown:
     """A touchdown between the second and the third of its `frames`.
 
@@ -58,14 +55,11 @@ class RecordedTouchdown:
     known that was near it in time, and matched once one is compared with it.
     """
 
-    stamp: int
-    old: tuple[int, ...]
-    new: tuple[int, ...]
-    approach: float
-    frames: list[Frame]
-    is_isolated: bool = True
-    is_announced: bool = False
-    is_matched: bool = False
+    def __init__(
+        self, stamp: int, old: tuple[int, ...], new: tuple[int, ...], approach: float, frames: list[Frame]
+    ) -> None:
+        self.stamp, self.old, self.new, self.approach, self.frames = stamp, old, new, approach, frames
+        self.is_isolated, self.is_announced, self.is_matched = True, False, False
 
     @property
     def kind(self) -> str:

@@ -402,12 +402,6 @@ def inertia_matrix(numbers: Sequence[float]) -> InertiaTensor:
     return (xx, xy, xz), (xy, yy, yz), (xz, yz, zz)
 
 
-def six_numbers(inertia: InertiaTensor) -> tuple[float, ...]:
-    """The numbers ixx, iyy, izz, ixy, ixz, iyz of an inertia tensor."""
-    (xx, xy, xz), (_, yy, yz), (_, _, zz) = inertia
-    return xx, yy, zz, xy, xz, yz
-
-
 def triples(numbers: Sequence[float]) -> tuple[Vector3, ...]:
     return tuple(triple(numbers[i : i + 3]) for i in range(0, len(numbers), 3))
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from itertools import repeat
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,9 +27,9 @@ from .planar import (
     planar_twist,
     plane_through,
 )
-from .scene import Scene, six_numbers
+from .scene import Scene
 from .types import PointOutcome, Quaternion, Sample, SpatialTwist, Touchdown, Vector3
-from .vectors import Axes, add, axes_of, cross, dot, mean, tensor_to_world, to_body, to_world
+from .vectors import Axes, add, axes_of, cross, dot, mean, six_numbers, tensor_to_world, to_body, to_world
 
 if TYPE_CHECKING:
     from .draws import Draws
@@ -42,7 +42,7 @@ MOVES = 1e-3
 """m/s: slower approaches are none."""
 
 
-class SpatialCollision(NamedTuple):
+class SpatialCollision:
     """The collision that a sample shows to be ahead, before its impact, in the frame in which the support is given.
 
     `position` in m is that of the mass centre, and `before` its twist; of each of the `points`, those of `contacts`,
@@ -51,18 +51,24 @@ class SpatialCollision(NamedTuple):
     rest is as in `Collision`.
     """
 
-    contacts: ActiveContacts
-    lead_time: float
-    position: Vector3
-    orientation: Quaternion
-    before: SpatialTwist
-    points: tuple[int, ...]
-    arms: tuple[Vector3, ...]
-    gaps: tuple[float, ...]
-    rates: tuple[float, ...]
-    places: Sequence[Vector3]
-    measured: float
-    speed: float
+    def __init__(
+        self,
+        contacts: ActiveContacts,
+        lead_time: float,
+        position: Vector3,
+        orientation: Quaternion,
+        before: SpatialTwist,
+        points: tuple[int, ...],
+        arms: tuple[Vector3, ...],
+        gaps: tuple[float, ...],
+        rates: tuple[float, ...],
+        places: Sequence[Vector3],
+        measured: float,
+        speed: float,
+    ) -> None:
+        self.contacts, self.lead_time, self.measured, self.speed = contacts, lead_time, measured, speed
+        self.position, self.orientation, self.before = position, orientation, before
+        self.points, self.arms, self.gaps, self.rates, self.places = points, arms, gaps, rates, places
 
 
 class SpatialImpactModel:
@@ -82,7 +88,8 @@ class SpatialImpactModel:
 
         `axes` are those of the body in the sample; `deviation` in m is that of the gaps.
         """
-        scene, (old, new), count = self._scene, collision.contacts, len(collision.contacts.old)
+        scene, old, new = self._scene, collision.contacts.old, collision.contacts.new
+        count = len(old)
         before, speed, normal = collision.before, collision.speed, scene.normal
         plane, now, least = plane_at(scene, collision), axes_of(collision.orientation), RESTS * speed
         problem, uncertainty = self._problem(collision, now), None

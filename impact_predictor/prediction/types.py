@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from enum import Enum, IntEnum, IntFlag
-from typing import TYPE_CHECKING, Any, Final, NamedTuple
+from typing import TYPE_CHECKING, Any, Final, NamedTuple, Protocol
 
 from ..mechanics.types import ContactState, Flag, Mode, Outcome, Twist, Vector
 from ..mechanics.types import Quaternion as Quaternion
 from ..mechanics.types import Vector3 as Vector3
+from .foot import Foot as Foot
 
 if TYPE_CHECKING:
-    from .score import SpatialScore
+    from .spatial_score import SpatialScore
 
 
 class Status(IntEnum):
@@ -170,6 +171,17 @@ class Moment(NamedTuple):
     gravity: Vector3 = (0.0, 0.0, -9.81)
 
 
+class SupportTracker(Protocol):
+    """What knows how a support moves: its `frames`, that of its motion and its own, and where it is `at` a stamp in ns,
+    or why that is not known.
+    """
+
+    @property
+    def frames(self) -> tuple[str, str]: ...
+
+    def at(self, stamp: int) -> Moment | Status: ...
+
+
 class Geometry(NamedTuple):
     """The points of a body that can touch the support, in m, in the body frame.
 
@@ -236,38 +248,6 @@ class Terrain(NamedTuple):
 
 ContactInput = Geometry | FeetStates | Joints | Wrench | Schedule | Terrain
 """What may be told about the contacts of a body besides its scene."""
-
-
-class Foot(NamedTuple):
-    """A foot as one sample shows it.
-
-    `stands` is inferred from gaps and velocities, `since` that stamp in ns (0 where it was so from the beginning);
-    `gap` (m) of its lowest point and how fast that approaches the ground (m/s); `lead_time` in s until it lands and
-    `landing_speed` in m/s then, None where no landing lies within the horizon; `late` in s after the planned landing,
-    negative before it, None without a plan; `confirmed` whether a force sensor agrees, None without one. `position` of
-    its lowest point, and the `place` where it lands, in m, in the frame of the sample. `impulse` in N s is what it gets
-    in the impact of the touchdown ahead, and `bound` what that is; None where it takes no part.
-
-    Of a landing that is announced: `landing_deviation`, the standard deviation of its time in s; the probability that
-    the foot `lands` within the horizon, and that it then `strikes` the ground and does not brake to rest on it.
-    """
-
-    name: str
-    stands: bool
-    since: int
-    gap: float
-    approach: float
-    lead_time: float | None = None
-    landing_speed: float | None = None
-    late: float | None = None
-    confirmed: bool | None = None
-    position: Vector3 | None = None
-    place: Vector3 | None = None
-    impulse: Vector3 | None = None
-    bound: Bound | None = None
-    landing_deviation: float | None = None
-    lands: float | None = None
-    strikes: float | None = None
 
 
 class Landing(NamedTuple):
@@ -396,17 +376,6 @@ class Touchdown(NamedTuple):
     def kind(self) -> str:
         """What stands and what strikes (`kind_of`)."""
         return kind_of(self.old, self.new)
-
-
-def impulse_at(touchdown: Touchdown, points: Sequence[int]) -> Vector3 | None:
-    """The impulse in N s on some points together, None where none of them takes part in a touchdown."""
-    x = y = z = 0.0
-    takes_part = False
-    for contact in touchdown.contacts:
-        if contact.point in points:
-            (u, v, w), takes_part = contact.impulse, True
-            x, y, z = x + u, y + v, z + w
-    return (x, y, z) if takes_part else None
 
 
 class Score(NamedTuple):

@@ -149,6 +149,12 @@ def tensor_to_world(axes: Axes, tensor: Axes) -> Axes:
     return rows[0], rows[1], rows[2]
 
 
+def six_numbers(tensor: Axes) -> tuple[float, float, float, float, float, float]:
+    """The numbers xx, yy, zz, xy, xz, yz of a symmetric tensor."""
+    x, y, z = tensor
+    return x[0], y[1], z[2], x[1], x[2], y[2]
+
+
 def turned(orientation: Quaternion, rotation: Vector3) -> Quaternion:
     """The unit quaternion after a rotation about a vector of the body frame, by its length in rad."""
     angle = sqrt(dot(rotation, rotation))

@@ -8,8 +8,8 @@ from operator import sub
 from typing import TYPE_CHECKING, Annotated, Any, Final, NamedTuple, get_type_hints
 
 from ..mechanics.types import Mode, Twist, Vector
-from ..prediction.score import Lift
 from ..prediction.skill import SIMPLE
+from ..prediction.spatial_score import Lift
 from ..prediction.types import Landing, Leftover, PointOutcome, Score
 from ..scenarios.comparison import LEAD_TIMES
 

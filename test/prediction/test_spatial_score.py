@@ -18,8 +18,8 @@ from impact_predictor.prediction.planar import Posture
 from impact_predictor.prediction.predictor import Predictor
 from impact_predictor.prediction.recorded import Announced, TouchdownRecorder
 from impact_predictor.prediction.scene import Scene
-from impact_predictor.prediction.score import SpatialScore
 from impact_predictor.prediction.skill import SIMPLE
+from impact_predictor.prediction.spatial_score import SpatialScore
 from impact_predictor.prediction.types import KINDS, Leftover, Sample, Score, SpatialTwist, kind_of
 
 HALF = 0.05

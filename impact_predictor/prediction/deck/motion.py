@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import partial
 from math import sin, sqrt
-from typing import Final, NamedTuple
+from typing import Final
 
 from ...stamps import NANOSECONDS
 from ..types import Felt, Moment, Quaternion, Vector3
@@ -25,7 +25,7 @@ SLOW = 1e-6, 1e-6
 QUARTER: Final = 1.4  # rad after which a wave is no longer like what it was: nearly a quarter of it
 
 
-class SupportState(NamedTuple):
+class SupportState:
     """What a message tells of a moving support, and, with the messages before, its accelerations.
 
     `stamp` in ns; `position` in m and `velocity` in m/s of its origin in the world, 0 where nobody measures them;
@@ -35,15 +35,21 @@ class SupportState(NamedTuple):
     angular velocity, along the support's axes.
     """
 
-    stamp: int
-    orientation: Quaternion
-    axes: Axes
-    angular: Vector3
-    position: Vector3 = NOWHERE
-    velocity: Vector3 = NOWHERE
-    acceleration: Vector3 = NOWHERE
-    felt: Vector3 = NOWHERE
-    turning: Vector3 = NOWHERE
+    def __init__(
+        self,
+        stamp: int,
+        orientation: Quaternion,
+        axes: Axes,
+        angular: Vector3,
+        position: Vector3 = NOWHERE,
+        velocity: Vector3 = NOWHERE,
+        acceleration: Vector3 = NOWHERE,
+        felt: Vector3 = NOWHERE,
+        turning: Vector3 = NOWHERE,
+    ) -> None:
+        self.stamp, self.orientation, self.axes, self.angular = stamp, orientation, axes, angular
+        self.position, self.velocity, self.acceleration, self.felt = position, velocity, acceleration, felt
+        self.turning = turning
 
 
 class MeanMotion:
@@ -107,18 +113,9 @@ def turned_back(vector: Vector3, rotation: Vector3) -> Vector3:
 
 def later(state: SupportState, stamp: int) -> SupportState:
     """The support at another stamp, before or after, with constant acceleration and angular acceleration."""
-    time = (stamp - state.stamp) / NANOSECONDS
-    velocity, acceleration = state.velocity, state.acceleration
-    rotation = times(add(state.angular, state.turning, 0.5 * time), time)
-    orientation = turned(state.orientation, rotation)
-    return state._replace(
-        stamp=stamp,
-        position=add(state.position, add(velocity, acceleration, 0.5 * time), time),
-        orientation=orientation,
-        axes=axes_of(orientation),
-        velocity=add(velocity, acceleration, time),
-        angular=add(state.angular, state.turning, time),
-    )
+    found = moved(state, stamp, state.acceleration, state.turning)
+    found.acceleration, found.felt, found.turning = state.acceleration, state.felt, state.turning
+    return found
 
 
 def between(first: SupportState, second: SupportState, stamp: int) -> SupportState:
@@ -127,10 +124,24 @@ def between(first: SupportState, second: SupportState, stamp: int) -> SupportSta
     acceleration = times(add(second.velocity, first.velocity, -1.0), 1.0 / whole)
     turning = times(add(second.angular, first.angular, -1.0), 1.0 / whole)
     part = (stamp - first.stamp) / NANOSECONDS / whole
-    return later(first._replace(acceleration=acceleration, turning=turning), stamp)._replace(
-        acceleration=blend(first.acceleration, second.acceleration, part),
-        felt=blend(first.felt, second.felt, part),
-        turning=blend(first.turning, second.turning, part),
+    found = moved(first, stamp, acceleration, turning)
+    found.acceleration = blend(first.acceleration, second.acceleration, part)
+    found.felt = blend(first.felt, second.felt, part)
+    found.turning = blend(first.turning, second.turning, part)
+    return found
+
+
+def moved(state: SupportState, stamp: int, acceleration: Vector3, turning: Vector3) -> SupportState:
+    """Where the support is at another stamp, and how fast it moves, under accelerations that do not change."""
+    time = (stamp - state.stamp) / NANOSECONDS
+    orientation = turned(state.orientation, times(add(state.angular, turning, 0.5 * time), time))
+    return SupportState(
+        stamp=stamp,
+        orientation=orientation,
+        axes=axes_of(orientation),
+        angular=add(state.angular, turning, time),
+        position=add(state.position, add(state.velocity, acceleration, 0.5 * time), time),
+        velocity=add(state.velocity, acceleration, time),
     )
 
 

@@ -105,11 +105,10 @@ class Deck:
         )
         if not self._spans(seen, seen.velocity):
             return self._refused()
-        acceleration, turning = self._linear.slopes(), self._angular.slopes()
-        felt = add(self._gravity, acceleration, -1.0)
+        seen.acceleration, seen.turning = self._linear.slopes(), self._angular.slopes()
+        seen.felt = add(self._gravity, seen.acceleration, -1.0)
         upright = dot(to_world(axes, self._normal), self._gravity) < 0.0
-        known = seen._replace(acceleration=acceleration, felt=felt, turning=turning)
-        return self._know(known, Status.ACCEPTED if upright else Status.GRAVITY_WRONG)
+        return self._know(seen, Status.ACCEPTED if upright else Status.GRAVITY_WRONG)
 
     def update_imu(self, imu: Imu) -> Status:
         """Take a message of an inertial sensor on it, where the scene says so. A refused one tells nothing."""
@@ -131,9 +130,9 @@ class Deck:
         # In a frame that does not turn what is felt changes with the support's acceleration alone.
         if not self._spans(seen, to_world(seen.axes, sensor.felt(imu))):
             return self._refused()
-        turning = self._angular.slopes()
-        felt = add(self._linear.ends(), to_world(seen.axes, sensor.euler(turning)))
-        return self._know(seen._replace(felt=felt, turning=turning), verdict)
+        seen.turning = self._angular.slopes()
+        seen.felt = add(self._linear.ends(), to_world(seen.axes, sensor.euler(seen.turning)))
+        return self._know(seen, verdict)
 
     @property
     def last(self) -> Moment | None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from math import erf, sqrt
-from typing import Final, NamedTuple
+from typing import Final
 
 from ...stamps import NANOSECONDS
 from ..planar import hardly
@@ -29,19 +29,18 @@ BEYOND: Final = 2.0  # standard deviations by which the ground may lie elsewhere
 THROUGH: Final = 0.5
 
 
-class ExpectedLanding(NamedTuple):
+class ExpectedLanding:
     """A landing that is announced: `stamp` in ns, and where and how fast the point will be then (m, m/s).
 
     `deviation` in s is the standard deviation of its time; the foot lands within the horizon with the probability
     `lands`, and then strikes the ground, and does not brake to rest on it, with the probability `strikes`.
     """
 
-    stamp: int
-    position: Vector3
-    velocity: Vector3
-    deviation: float
-    lands: float
-    strikes: float
+    def __init__(
+        self, stamp: int, position: Vector3, velocity: Vector3, deviation: float, lands: float, strikes: float
+    ) -> None:
+        self.stamp, self.position, self.velocity, self.deviation = stamp, position, velocity, deviation
+        self.lands, self.strikes = lands, strikes
 
 
 class LandingAnnouncement:

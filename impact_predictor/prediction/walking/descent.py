@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Sequence
 from math import exp, log, sqrt
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import TYPE_CHECKING, Final
 
 from ...stamps import NANOSECONDS
 from ..vectors import total
@@ -245,17 +245,15 @@ class LeadTimeErrors:
         return 0.0 if count * mean * mean <= chance else mean - chance / (count * mean)
 
 
-class Descent(NamedTuple):
+class Descent:
     """A landing that is expected `time` s after a sample, with the standard `deviation` of that in s.
 
     `strikes` is the probability that the foot strikes the ground and does not brake to rest on it, `rate` (m/s) that of
     the gap at the landing, 0 of one that rather rests.
     """
 
-    time: float
-    deviation: float
-    strikes: float
-    rate: float
+    def __init__(self, time: float, deviation: float, strikes: float, rate: float) -> None:
+        self.time, self.deviation, self.strikes, self.rate = time, deviation, strikes, rate
 
 
 DescentRecord = tuple[int, tuple[float, float, float], tuple[float, float], tuple[Cubic, Triangle, float]]

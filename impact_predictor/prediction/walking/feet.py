@@ -4,17 +4,16 @@ from __future__ import annotations
 
 from collections import deque
 from math import hypot, inf, isnan, sqrt
-from operator import attrgetter
 from typing import Final
 
 from ...stamps import NANOSECONDS
 from ..checks import LARGEST, PAUSE, order_of
+from ..foot import Foot, impulse_at
 from ..predictor import DEEP, DEEP_TOLERANCES, Contacts
 from ..scene import Scene
 from ..types import (
     ContactInput,
     FeetStates,
-    Foot,
     Geometry,
     Joints,
     Moment,
@@ -25,7 +24,6 @@ from ..types import (
     Touchdown,
     Vector3,
     Wrench,
-    impulse_at,
 )
 from ..vectors import add, axes_of, cross, dot, times, to_body, to_world
 from .announcement import ExpectedLanding
@@ -283,7 +281,10 @@ class FeetContacts(Contacts):
     def _foot(self, number: int, stamp: int) -> Foot:
         name, each = self._walking.feet[number], self._walking.points
         own = slice(number * each, (number + 1) * each)
-        points, dues = self._points[own], [due for due in self._dues[own] if due is not None]
+        points, due = self._points[own], None
+        for one in self._dues[own]:
+            if one is not None and (due is None or one.stamp < due.stamp):
+                due = one
         landed = [since for point in points if (since := point.landed) is not None]
         since = min(landed) if landed else max([point.since for point in points])
         lowest = points[0].trajectory
@@ -292,8 +293,7 @@ class FeetContacts(Contacts):
                 lowest = point.trajectory
         frame = lowest.frames[-1]
         lead_time = speed = late = place = deviation = lands = strikes = None
-        if dues:
-            due = min(dues, key=attrgetter("stamp"))
+        if due is not None:
             lead_time, speed = (due.stamp - stamp) / NANOSECONDS, -dot(self.scene.normal, due.velocity)
             late, place = self._schedule.late(name, due.stamp), due.position
             deviation, lands, strikes = hypot(due.deviation, self._clock.left), due.lands, due.strikes

@@ -3,32 +3,32 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, Final, NamedTuple
+from typing import Any, Final
 
 import numpy as np
 
 from ...errors import InputError
 from ...mechanics.impact.spatial import ContactPoints, SpatialOutcome, solve_body
 from ..planar import GRAZES, ORIGIN
-from ..scene import Scene, six_numbers
+from ..scene import Scene
 from ..types import Bound, Status, Vector3
-from ..vectors import Axes, add, cross, tensor_to_world, to_world
+from ..vectors import Axes, add, cross, six_numbers, tensor_to_world, to_world
 from .base import NOTHING
 
 SINGULAR: Final = 1e-12  # a principal moment of inertia below this part of the largest one is rounding
 
 
-class MachineOutcome(NamedTuple):
+class MachineOutcome:
     """What an impact does to a machine, the bound that it is, and of a robot more.
 
     The twist of the impact is the change of that of the base, at its origin. `jumps` are the changes of the joint
     velocities (rad/s or m/s), `drives` is the part of the impulses' work that the drives oppose, 0 to 1.
     """
 
-    impact: SpatialOutcome
-    bound: Bound
-    jumps: tuple[float, ...] = ()
-    drives: float = 0.0
+    def __init__(
+        self, impact: SpatialOutcome, bound: Bound, jumps: tuple[float, ...] = (), drives: float = 0.0
+    ) -> None:
+        self.impact, self.bound, self.jumps, self.drives = impact, bound, jumps, drives
 
 
 class RigidMachine:

@@ -11,8 +11,9 @@ from operator import attrgetter
 from typing import TYPE_CHECKING, Any, Final
 
 from ...mechanics.types import Mode
+from ...prediction.foot import impulse_at
 from ...prediction.skill import SIMPLE
-from ...prediction.types import Bound, Landing, Prediction, Score, SpatialTwist, Touchdown, Vector3, impulse_at
+from ...prediction.types import Bound, Landing, Prediction, Score, SpatialTwist, Touchdown, Vector3
 from ...prediction.vectors import add
 from ..cdr import LENGTHS, PADDING, add_pair, string
 from .kinds import (
@@ -43,7 +44,7 @@ from .kinds import (
 )
 
 if TYPE_CHECKING:
-    from ...prediction.score import Lift
+    from ...prediction.spatial_score import Lift
 
 
 class Table:

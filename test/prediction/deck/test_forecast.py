@@ -157,8 +157,8 @@ def test_roll_and_pitch_are_told_fifteen_seconds_ahead_with_how_unsure_they_are(
         (roll, pitch), (later, other) = angles(time), angles(time + 1e-6)
         orientation = composed(turned(LEVEL, (0.0, pitch, 0.0)), turned(LEVEL, (roll, 0.0, 0.0)))
         seen = state(time, GRAVITY, ((later - roll) * 1e6, (other - pitch) * 1e6, 0.0))
-        axes = axes_of(orientation)
-        forecast.add(seen._replace(axes=axes, felt=GRAVITY))
+        seen.axes, seen.felt = axes_of(orientation), GRAVITY
+        forecast.add(seen)
     ahead = forecast.outlook(250 * 10**9).at(LEADS)
     assert ahead.angles is not None
     wanted = np.array([angles(250.0 + lead) for lead in LEADS])
@@ -182,7 +182,9 @@ def test_a_deck_at_rest_stays_at_rest() -> None:
 def test_a_velocity_that_stays_hides_nothing_however_large_it_is(speed: float) -> None:
     forecast = WaveForecast(GRAVITY, is_felt=False)
     for time in np.arange(0.0, 120.0, 0.1):
-        forecast.add(state(float(time), GRAVITY, (0.0, 0.0, 0.0))._replace(velocity=(speed, 0.0, 0.0)))
+        seen = state(float(time), GRAVITY, (0.0, 0.0, 0.0))
+        seen.velocity = speed, 0.0, 0.0
+        forecast.add(seen)
     assert forecast.status is ForecastStatus.TRUSTED
     gravity = forecast.outlook(120 * 10**9).gravity
     assert gravity.reshape(-1, 3) == pytest.approx(np.tile(GRAVITY, (gravity.size // 3, 1)), abs=1e-15 * speed)
@@ -193,8 +195,9 @@ def test_a_leap_whose_squares_hide_all_else_is_no_error(speed: float) -> None:
     forecast = WaveForecast(GRAVITY, is_felt=False)
     with np.errstate(over="ignore", invalid="ignore"):
         for time in np.arange(0.0, 120.0, 0.1):
-            still = state(float(time), GRAVITY, (0.0, 0.0, 0.0))
-            forecast.add(still._replace(velocity=(speed if time > 3.0 else 0.0, 0.0, 0.0)))
+            seen = state(float(time), GRAVITY, (0.0, 0.0, 0.0))
+            seen.velocity = speed if time > 3.0 else 0.0, 0.0, 0.0
+            forecast.add(seen)
     assert forecast.status is not ForecastStatus.TRUSTED
 
 

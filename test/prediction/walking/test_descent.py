@@ -75,8 +75,8 @@ def walked(
             filtered.add(one, noise)
             found = estimator.estimate(filtered, LEVEL, prior)
             if found is not None:
-                deviation = prior.deviations.told(found.time, found.deviation)
-                own.append((-time, found._replace(deviation=deviation)))
+                found.deviation = prior.deviations.told(found.time, found.deviation)
+                own.append((-time, found))
         estimator.learn(land, round(land - 2.5 * MS), LEVEL, prior)
         estimator.rest()
         told.append(own)
