@@ -42,6 +42,20 @@ def check_numbers(sample: Sample) -> Status:
     return check_orientation(sample.orientation)
 
 
+def with_motion(
+    sample: Sample,
+    stamp: int,
+    frame_id: str,
+    position: Vector3,
+    orientation: Quaternion,
+    linear: Vector3,
+    angular: Vector3,
+) -> Sample:
+    """A sample with another motion. `_replace` takes thrice as long, which is a tenth of a sample over a deck."""
+    covariances = sample.pose_covariance, sample.twist_covariance
+    return Sample(stamp, frame_id, sample.child_frame_id, position, orientation, linear, angular, *covariances)
+
+
 def in_floats(sample: Any) -> Sample:
     """A sample in floats, whose numbers are told in lists or in arrays.
 

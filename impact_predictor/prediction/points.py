@@ -12,7 +12,7 @@ from typing import Final
 from ..mechanics.motion import Fall, PlanarState, next_touchdown
 from ..mechanics.types import Contact, TwoPointBody, Vector
 from ..stamps import NANOSECONDS
-from .checks import PAUSE, check_points
+from .checks import PAUSE, check_points, with_motion
 from .impact import SLOWEST, Collision, ImpactModel, collision_after
 from .planar import ImpactPlane, Posture, center_of, contacts_of, edge_of, hardly, inertia_about, plane_of, posture_of
 from .predictor import DEEP, DEEP_TOLERANCES, Contacts
@@ -388,4 +388,5 @@ def differenced(last: Sample | None, sample: Sample) -> Sample:
         return sample
     rate = NANOSECONDS / (sample.stamp - last.stamp)
     linear = times(to_body(axes_of(sample.orientation), add(sample.position, last.position, -1.0)), rate)
-    return sample._replace(linear=linear, angular=rotation_between(last.orientation, sample.orientation, rate))
+    angular = rotation_between(last.orientation, sample.orientation, rate)
+    return with_motion(sample, sample.stamp, sample.frame_id, sample.position, sample.orientation, linear, angular)

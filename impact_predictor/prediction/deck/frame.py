@@ -25,6 +25,7 @@ from typing import Final
 from ...mechanics.motion import Fall, PlanarState, next_strike
 from ...mechanics.motion.felt import FeltPolynomials, FrameAcceleration
 from ...mechanics.types import Contact, TwoPointBody
+from ..checks import with_motion
 from ..planar import ORIGIN, ImpactPlane, Posture, center_of
 from ..scene import Scene
 from ..types import Felt, Moment, Prediction, Quaternion, Sample, Vector3
@@ -55,13 +56,9 @@ def seen_from(moment: Moment, frame: str, sample: Sample) -> Sample | None:
     orientation = composed((-x, -y, -z, w), sample.orientation)
     axes = axes_of(orientation)
     spin = moment.felt.angular
-    return sample._replace(
-        frame_id=moment.child_frame_id,
-        position=place,
-        orientation=orientation,
-        linear=add(sample.linear, to_body(axes, add(moment.linear, cross(spin, place))), -1.0),
-        angular=add(sample.angular, to_body(axes, spin), -1.0),
-    )
+    linear = add(sample.linear, to_body(axes, add(moment.linear, cross(spin, place))), -1.0)
+    angular = add(sample.angular, to_body(axes, spin), -1.0)
+    return with_motion(sample, sample.stamp, moment.child_frame_id, place, orientation, linear, angular)
 
 
 def post_impact(prediction: Prediction) -> tuple[Vector3, Quaternion, Vector3, Vector3]:

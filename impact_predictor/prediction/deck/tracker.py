@@ -322,17 +322,19 @@ class Deck:
         return heard is not None and stamp - heard <= self._timeout and heard - last > self._timeout // 2
 
     def _moment(self, known: SupportState) -> Moment:
-        felt = Felt(to_body(known.axes, known.felt), known.angular, known.turning)
+        felt, linear = to_body(known.axes, known.felt), to_body(known.axes, known.velocity)
+        frame, child = self.frames
+        # By place, which takes half the time: each sample of a body asks for one.
         return Moment(
-            stamp=known.stamp,
-            frame_id=self.frames[0],
-            child_frame_id=self.frames[1],
-            position=known.position,
-            orientation=known.orientation,
-            linear=to_body(known.axes, known.velocity),
-            felt=felt,
-            ahead=partial(ahead, *felt),
-            gravity=self._gravity,
+            known.stamp,
+            frame,
+            child,
+            known.position,
+            known.orientation,
+            linear,
+            Felt(felt, known.angular, known.turning),
+            partial(ahead, felt, known.angular, known.turning),
+            self._gravity,
         )
 
 

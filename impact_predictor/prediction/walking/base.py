@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from typing import Final
 
 from ...stamps import NANOSECONDS
+from ..checks import with_motion
 from ..types import Sample
 from ..vectors import add, axes_of, lines, rotation_between, times, to_body, to_world, turned
 
@@ -96,12 +97,10 @@ def extrapolated(sample: Sample, line: TwistLine | None, time: float) -> Sample:
     spin = to_body(axes_of(sample.orientation), (u + half * p, v + half * q, w + half * r))
     orientation = turned(sample.orientation, times(spin, time))
     then = axes_of(orientation)
-    return sample._replace(
-        position=add(sample.position, (x + half * a, y + half * b, z + half * c), time),
-        orientation=orientation,
-        linear=to_body(then, (x + a * time, y + b * time, z + c * time)),
-        angular=to_body(then, (u + p * time, v + q * time, w + r * time)),
-    )
+    position = add(sample.position, (x + half * a, y + half * b, z + half * c), time)
+    linear = to_body(then, (x + a * time, y + b * time, z + c * time))
+    angular = to_body(then, (u + p * time, v + q * time, w + r * time))
+    return with_motion(sample, sample.stamp, sample.frame_id, position, orientation, linear, angular)
 
 
 def between(before: Sample, after: Sample, stamp: int) -> Sample:
@@ -114,10 +113,6 @@ def between(before: Sample, after: Sample, stamp: int) -> Sample:
     spin = add(after.angular, before.angular, -1.0)
     place = add(before.position, add(after.position, before.position, -1.0), part)
     rotation = add(times(rotation_between(before.orientation, after.orientation), part), spin, -bend)
-    return before._replace(
-        stamp=stamp,
-        position=add(place, gain, -bend),
-        orientation=turned(before.orientation, rotation),
-        linear=add(before.linear, add(after.linear, before.linear, -1.0), part),
-        angular=add(before.angular, spin, part),
-    )
+    position, orientation = add(place, gain, -bend), turned(before.orientation, rotation)
+    linear = add(before.linear, add(after.linear, before.linear, -1.0), part)
+    return with_motion(before, stamp, before.frame_id, position, orientation, linear, add(before.angular, spin, part))
