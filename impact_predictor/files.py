@@ -73,3 +73,9 @@ def whole(path: Path) -> Iterator[Path]:
         raise InputError(f"{path} cannot be written: {error.strerror or error}") from error
     finally:
         partial.unlink(missing_ok=True)
+
+
+def write_text(path: Path, text: str) -> None:
+    """Write a text file that has its name when it is whole; InputError where it cannot be written."""
+    with whole(path) as partial:
+        partial.write_text(text, encoding="utf-8")

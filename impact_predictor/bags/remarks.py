@@ -121,7 +121,10 @@ def remarks(
             said.append(f"nothing comes on {names.get(one, one.name)}, though {MISSED[one.kind]}{otherwise}")
     for one in inputs:
         if one.kind in POINTS and one.body is not None:
-            said += [f"{names[one]}: {doubt}" for doubt in _doubts(run, one.body)]
+            # What speaks against the scene although the messages fit it.
+            unknown = listed(run.monitor.predictors[one.body].contacts.unknown_joints, _MOST_NAMED)
+            left_out = f"robot.urdf does not know {unknown}, so what is told of these joints is left out"
+            said += [f"{names[one]}: {left_out}"] if unknown else []
     said += run.monitor.deck.doubts() if run.monitor.deck is not None else ()
     for body, record in run.bodies.items():
         contacts, walking = run.monitor.predictors[body].contacts, record.scene.walking
@@ -134,15 +137,6 @@ def remarks(
     if run.comparison is not None and (later := run.comparison.later_landings()):
         landings = "1 true landing is" if later == 1 else f"{later:,} true landings are"
         said.append(f"{landings} after the last sample that was accepted, and not counted")
-    return said
-
-
-def _doubts(run: Run, body: str) -> list[str]:
-    """What is left out of the messages about contact points, and what speaks against the scene although they fit it."""
-    said, left_out = list[str](), run.monitor.predictors[body].contacts.unknown_joints
-    if left_out:
-        unknown = listed(left_out, _MOST_NAMED)
-        said.append(f"robot.urdf does not know {unknown}, so what is told of these joints is left out")
     return said
 
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Final
 import click
 
 from ..errors import InputError
-from ..files import whole
+from ..files import write_text
 from ..mechanics.impact import LAWS
 from .options import choice, examples, json_flag, seed_option, text
 
@@ -85,8 +85,7 @@ def invariants(count: int, seed: int, law: str, resume: str | None, as_json: boo
         bar(done)
         if resume is not None and (done == count or perf_counter() - saved > SAVE_EVERY):
             saved = perf_counter()
-            with whole(Path(resume)) as partial:
-                partial.write_text(json.dumps(soak.state()), encoding="utf-8")
+            write_text(Path(resume), json.dumps(soak.state()))
 
     with compiling_is_said(), progress("invariants", "problems", count) as bar:
         try:

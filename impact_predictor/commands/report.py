@@ -10,7 +10,7 @@ from typing import Any
 import click
 
 from ..errors import need
-from ..files import make_folder, whole
+from ..files import make_folder, whole, write_text
 from .options import examples, json_flag
 
 
@@ -78,12 +78,11 @@ def write(folder: Path, fields: dict[str, Any]) -> None:
         InputError: a file cannot be written.
     """
     from ..report.accuracy.page import accuracy_page
-    from ..report.page import script_inside, write_html
+    from ..report.page import script_inside
 
-    with whole(folder / "report.json") as partial:
-        partial.write_text(json.dumps(fields, indent=1, allow_nan=False), encoding="utf-8")
+    write_text(folder / "report.json", json.dumps(fields, indent=1, allow_nan=False))
     with whole(folder / "report.csv") as partial, partial.open("w", newline="", encoding="utf-8") as file:
         writer = csv.DictWriter(file, list(fields["rows"][0]), lineterminator="\n")
         writer.writeheader()
         writer.writerows(fields["rows"])
-    write_html(folder / "report.html", accuracy_page(fields, script_inside()))
+    write_text(folder / "report.html", accuracy_page(fields, script_inside()))

@@ -121,11 +121,12 @@ def simulate_robot(
         check_replaceable(scene)
     if terrain and not (options["blocks"] or options["stairs"]):
         raise click.UsageError("--terrain is that of --blocks or --stairs: give one of them too")
+    from ..files import write_text
     from ..scenarios.as_json import walk_as_json
     from ..scenarios.record import write_messages
     from ..scenarios.robot.gait import PlannedGait
     from ..scenarios.robot.machine import Machine, Physics
-    from ..scenarios.robot.scene import write_scene
+    from ..scenarios.robot.scene import scene_of
     from ..scenarios.robot.sensors import WalkSensors, walk_messages
     from ..scenarios.robot.walk import landings_of, walk
 
@@ -140,7 +141,7 @@ def simulate_robot(
     landings = landings_of(walked)
     if output is not None and scene is not None:
         write_messages(output, walk_messages(walked, landings, sensors))
-        write_scene(scene, walked, by_joints=by_joints, on_terrain=terrain)
+        write_text(scene, scene_of(walked, by_joints=by_joints, on_terrain=terrain))
     if as_json:
         click.echo(json.dumps(walk_as_json(walked, landings), allow_nan=False))
     else:

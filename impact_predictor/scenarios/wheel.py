@@ -111,8 +111,8 @@ class WheelStrike(NamedTuple):
 class Rolling:
     """How a wheel rolled, from 0 to `time` (s)."""
 
-    def __init__(self, wheel: Wheel, law: str, parts: list[RollingPart], end: RollEnd, time: float) -> None:
-        self.wheel, self.law, self.end, self.time = wheel, law, end, time
+    def __init__(self, wheel: Wheel, parts: list[RollingPart], end: RollEnd, time: float) -> None:
+        self.wheel, self.end, self.time = wheel, end, time
         self.parts = tuple(parts)
         self._starts = [part.start for part in parts]
 
@@ -158,12 +158,6 @@ class Rolling:
             values[2, chosen] -= 2.0 * self.wheel.alpha * part.first
         return in_world(self.wheel.hub.support.motion(times), PlanarState(*values))
 
-    def stood(self, time: float) -> tuple[tuple[int, str], ...]:
-        """The tips on the ground at a time in s, each with S where it sticks, + or - where it slips down or up."""
-        part = self.parts[int(np.searchsorted(self._starts, time, side="right")) - 1]
-        states, count = part.run.states(time), self.wheel.spokes
-        return tuple(((part.first + i) % count, state) for i, state in enumerate(states) if state != "O")
-
 
 def roll(wheel: Wheel, rate: float = 0.0, steps: int | None = 20, duration: float = 60.0, law: str = "path") -> Rolling:
     """Let a wheel go with spoke 0 at right angles to the slope, turning ahead at `rate` (rad/s).
@@ -193,11 +187,11 @@ def roll(wheel: Wheel, rate: float = 0.0, steps: int | None = 20, duration: floa
         parts.append(RollingPart(first, time, run))
         flight = next((phase.start for phase in run.phases if phase.states == "OO" and phase.end > phase.start), inf)
         if flight < inf:
-            return Rolling(wheel, law, parts, RollEnd.TAKES_OFF, flight)
+            return Rolling(wheel, parts, RollEnd.TAKES_OFF, flight)
         if run.end is not End.OVERTURNED:
-            return Rolling(wheel, law, parts, _ENDS.get(run.end, RollEnd.LOST), run.time)
+            return Rolling(wheel, parts, _ENDS.get(run.end, RollEnd.LOST), run.time)
         if onwards is last:
-            return Rolling(wheel, law, parts, RollEnd.STEPS_DONE, run.time)
+            return Rolling(wheel, parts, RollEnd.STEPS_DONE, run.time)
         # The next spoke touches: as if the wheel had gone on by a step, and not turned.
         end, on = run.state(run.time), 1 if onwards else -1
         state, time, first = end._replace(angle=end.angle + on * 2.0 * alpha), run.time, first + on

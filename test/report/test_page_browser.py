@@ -12,8 +12,9 @@ from typing import Any
 import pytest
 from replay_answers import TOSSES, TRUE, UNREADABLE, WALK, answer, touchdown
 
+from impact_predictor.files import write_text
 from impact_predictor.report.accuracy.page import accuracy_page
-from impact_predictor.report.page import script_inside, write_html
+from impact_predictor.report.page import script_inside
 from impact_predictor.report.page.replay import write_replay_page
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
@@ -74,7 +75,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     write_replay_page(folder / "replay.html", answers)
     write_replay_page(folder / "week", answers)
     report = json.loads((Path(__file__).parent / "page_report.json").read_text())
-    write_html(folder / "report.html", accuracy_page(report, script_inside()))
+    write_text(folder / "report.html", accuracy_page(report, script_inside()))
     return folder
 
 

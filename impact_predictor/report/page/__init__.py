@@ -8,11 +8,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from html import escape
 from importlib.resources import files
-from pathlib import Path
 from typing import Any, Final, NamedTuple
 
 from ... import __version__
-from ...files import whole
 from ...wording import duration, percent
 from ..table import Column, texts_of
 
@@ -111,16 +109,6 @@ def script_inside() -> str:
     from plotly.offline import get_plotlyjs
 
     return f"<script>{get_plotlyjs()}</script>"
-
-
-def write_html(file: Path, text: str) -> None:
-    """Write a page or its script; an older one stays until it is whole.
-
-    Raises:
-        InputError: the file cannot be written.
-    """
-    with whole(file) as partial:
-        partial.write_text(text, encoding="utf-8")
 
 
 def part_words(part: float | None) -> str:

@@ -6,10 +6,11 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
+from ...files import write_text
 from ...prediction.skill import SIMPLE
 from ..skill import kind_scores
 from ..touchdowns import TouchdownRow, row_as_json
-from . import Headline, Section, page, part_words, script_inside, write_html
+from . import Headline, Section, page, part_words, script_inside
 from .facts import FOUND, BagAnswer, ReplayFacts
 from .landings import landings
 from .replay import modes, velocities
@@ -55,7 +56,7 @@ def write_demo_page(path: Path, tosses: Shown, deck: Shown, robot: Shown) -> Non
     )
     title = "A cube, a crate and a robot: the next touchdown, before it happens"
     lead = "Predicted as samples came in; what happened stands beside it."
-    write_html(path, page(title, lead, headlines, sections, script_inside()))
+    write_text(path, page(title, lead, headlines, sections, script_inside()))
 
 
 def twists(live: ReplayFacts) -> Headline:

@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, Final
 
-from ...files import make_folder
+from ...files import make_folder, write_text
 from ...prediction.checks import REMEDIES
 from ...prediction.types import Status
 from ...stamps import NANOSECONDS
@@ -27,7 +27,6 @@ from . import (
     page,
     part_words,
     script_inside,
-    write_html,
 )
 from .facts import FOUND, NOTHING, BagAnswer, ReplayFacts
 from .landings import landings
@@ -85,16 +84,16 @@ def write_replay_page(path: str | os.PathLike[str], answers: Sequence[BagAnswer]
 
     path = Path(path)
     if path.suffix:
-        write_html(path, page_of_replay(answers, script_inside()))
+        write_text(path, page_of_replay(answers, script_inside()))
         return
     make_folder(path)
-    write_html(path / "plotly.min.js", get_plotlyjs())
+    write_text(path / "plotly.min.js", get_plotlyjs())
     script = '<script src="plotly.min.js"></script>'
     # The name of a bag is no name of a file: it comes from elsewhere.
     links = {place: f"bag-{place + 1}.html" for place, answer in enumerate(answers) if "error" not in answer}
     for place, name in links.items():
-        write_html(path / name, page_of_replay([answers[place]], script))
-    write_html(path / "index.html", page_of_replay(answers, script, links))
+        write_text(path / name, page_of_replay([answers[place]], script))
+    write_text(path / "index.html", page_of_replay(answers, script, links))
 
 
 def page_of_replay(

@@ -67,15 +67,3 @@ def check_replaceable(path: Path) -> None:
     """
     if path.exists() and not (path.is_file() and path.read_bytes().startswith(HEAD.encode())):
         raise InputError(f"{path} is no scene of a simulated robot, so it stays as it is; give --params-out")
-
-
-def write_scene(path: Path, walk: Walk, *, by_joints: bool = False, on_terrain: bool = False) -> None:
-    """Write the scene.
-
-    Raises:
-        InputError: it cannot be written.
-    """
-    try:
-        path.write_text(scene_of(walk, by_joints=by_joints, on_terrain=on_terrain), encoding="utf-8")
-    except OSError as error:
-        raise InputError(f"{path} cannot be written: {error.strerror}") from error

@@ -12,7 +12,7 @@ from ...prediction.types import Vector3
 from ...stamps import NANOSECONDS
 from ..truth import LandingState, TrueLanding
 from .description import Values
-from .gait import PlannedGait, References, references
+from .gait import PlannedGait, references
 from .ground import SimulatedGround
 from .machine import STEP, Machine
 
@@ -58,7 +58,6 @@ class Walk(NamedTuple):
     machine: Machine
     ground: SimulatedGround
     gait: PlannedGait
-    references: References
     positions: Values
     velocities: Values
     efforts: Values
@@ -153,7 +152,6 @@ def walk(
         machine=machine,
         ground=ground,
         gait=gait,
-        references=told,
         positions=positions[rows],
         velocities=velocities[rows],
         efforts=efforts[rows],

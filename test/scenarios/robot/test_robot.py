@@ -19,7 +19,7 @@ from impact_predictor.scenarios.robot.description import RobotFiles, Sole
 from impact_predictor.scenarios.robot.gait import PlannedGait
 from impact_predictor.scenarios.robot.ground import SimulatedGround, blocks, stairs
 from impact_predictor.scenarios.robot.machine import STEP, Machine, Physics
-from impact_predictor.scenarios.robot.scene import write_scene
+from impact_predictor.scenarios.robot.scene import scene_of
 from impact_predictor.scenarios.robot.sensors import WalkSensors, walk_messages
 from impact_predictor.scenarios.robot.walk import STANDS, SWING, Walk, landings_of, walk
 from impact_predictor.scenarios.truth import LANDING_TOPIC, TrueLanding, decode_truths
@@ -271,7 +271,7 @@ def test_noise_has_the_deviations_that_are_asked_for_and_a_seed_makes_it(
 def test_a_replay_with_the_scene_finds_the_landings(tmp_path: Path, level: Walk) -> None:
     landings = landings_of(level)
     write_messages(tmp_path / "dog.mcap", walk_messages(level, landings, WalkSensors()))
-    write_scene(tmp_path / "dog.yaml", level)
+    (tmp_path / "dog.yaml").write_text(scene_of(level, by_joints=False, on_terrain=False))
     scenes = scenes_of(read_values(str(tmp_path / "dog.yaml")))
     assert scenes[""].mass == pytest.approx(level.machine.mass)
     result = replay(tmp_path / "dog.mcap", scenes)
