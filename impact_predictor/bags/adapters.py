@@ -58,9 +58,7 @@ def of_world(
 
     The body by the position of its origin in m, its orientation as (x, y, z, w), its linear and angular velocity in m/s
     and rad/s along the axes of the world; the points in m and their velocities in m/s, () where they are not measured.
-
-    Raises:
-        ValueError: the orientation is zero, or there are velocities of another number of points.
+    ValueError where the orientation is zero, or there are velocities of another number of points.
     """
     if not any(orientation):
         raise ValueError("the orientation is a zero quaternion")
@@ -85,11 +83,8 @@ class AdapterReader(NamedTuple):
     adapt: Adapter
 
     def __call__(self, data: bytes) -> Adapted:
-        """What a message tells.
-
-        Raises:
-            MalformedMessage: its bytes are none of its type, or as UnusableMessage: the adapter refuses it.
-            InputError: the adapter fails.
+        """What a message tells; MalformedMessage where its bytes are none of its type, as UnusableMessage where the
+        adapter refuses it, and InputError where the adapter fails.
         """
         try:
             message = self.decode(data)
@@ -111,11 +106,7 @@ class AdapterReader(NamedTuple):
         return adapted
 
     def check_stands(self, adapted: Adapted, feet: tuple[str, ...]) -> None:
-        """Whether a message that tells which feet stand does so for each of them.
-
-        Raises:
-            InputError: it does not.
-        """
+        """Whether a message that tells which feet stand does so for each of them; InputError where it does not."""
         if len(adapted.stands) not in (0, len(feet)):
             raise InputError(
                 f"the adapter {self.named} tells in `stands` of {len(adapted.stands)} feet, but feet.names has "
@@ -129,11 +120,8 @@ def known() -> dict[str, EntryPoint]:
 
 
 def readers(bag: Bag, types: Mapping[str, str]) -> dict[str, AdapterReader]:
-    """What reads the messages of some topics of a bag, by their types, which have adapters.
-
-    Raises:
-        InputError: an adapter cannot be imported, or the bag holds no definition of a type; while reading: an adapter
-            fails.
+    """What reads the messages of some topics of a bag, by their types, which have adapters; InputError where an adapter
+    cannot be imported, or the bag holds no definition of a type, and while reading where an adapter fails.
     """
     adapters, found = known(), {}
     for topic, decode in bag.decoders(types).items():

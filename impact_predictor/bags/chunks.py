@@ -113,10 +113,8 @@ class Chunk(NamedTuple):
     channels: frozenset[int] | None = None
 
     def unpacked(self, file: BinaryIO, expansion: Expansion) -> bytes:
-        """Its bytes without compression; of a chunk that was cut off, those that there are.
-
-        Raises:
-            Flaw: they are damaged.
+        """Its bytes without compression; of a chunk that was cut off, those that there are. Flaw where they are
+        damaged.
         """
         size = max(self.size, self.length)
         if size > LARGEST:
@@ -144,10 +142,8 @@ class ChunkedFile(ABC):
     """A file that is read up to its first damage outside of chunks, which is its `flaw`."""
 
     def __init__(self, path: Path) -> None:
-        """Find the chunks and channels of a file; messages are read when they are asked for.
-
-        Raises:
-            OSError: it cannot be read.
+        """Find the chunks and channels of a file; messages are read when they are asked for. OSError where it cannot be
+        read.
         """
         self.path = path
         self._file: BinaryIO = path.open("rb")
@@ -182,10 +178,8 @@ class ChunkedFile(ABC):
         """The messages of some channels by their log times, those of one log time in the order of the file.
 
         A chunk is loaded when its first message is due, and not where none of the channels is in it. From where one is
-        damaged on nothing is used any more; what lies before it is.
-
-        Raises:
-            Flaw: the file is damaged, after all messages before that.
+        damaged on nothing is used any more; what lies before it is. Flaw where the file is damaged, after all messages
+        before that.
         """
         by_time = itemgetter(0, 1)
         waiting: list[RawMessage] = []
@@ -232,10 +226,8 @@ class ChunkedFile(ABC):
 
     @abstractmethod
     def _scan(self) -> None:
-        """Go from record to record, and take chunks, channels and numbers of messages.
-
-        Raises:
-            Flaw: a record is damaged or cut off.
+        """Go from record to record, and take chunks, channels and numbers of messages; Flaw where a record is damaged
+        or cut off.
         """
 
     @abstractmethod
@@ -287,11 +279,7 @@ def decompressed_message(data: bytes) -> bytes:
 
 
 def decompress_file(source: Path, target: Path) -> bool:
-    """Decompress a file as far as it goes; whether that is to its end.
-
-    Raises:
-        OSError: a file cannot be read or written.
-    """
+    """Decompress a file as far as it goes; whether that is to its end. OSError where one cannot be read or written."""
     expansion = Expansion(source.stat().st_size)
     with zstd.open(source, "rb") as packed, target.open("wb") as file:
         try:

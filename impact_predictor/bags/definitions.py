@@ -18,10 +18,8 @@ _IDL: Final = f"{'=' * 80}\nIDL: "
 
 
 def typestore_of(path: str | os.PathLike[str], channels: Collection[BagChannel]) -> Typestore:
-    """The types of the messages of some channels.
-
-    Raises:
-        InputError: the bag holds no definition of one of them, or one that cannot be read.
+    """The types of the messages of some channels; InputError where the bag holds no definition of one of them, or one
+    that cannot be read.
     """
     for one in channels:
         if one.schema not in ("ros2msg", "ros2idl", "ros1msg"):

@@ -41,11 +41,8 @@ def bags_of(arguments: Sequence[str]) -> list[str]:
 
     A folder that is not itself a bag stands for all bags in it and below it, and a pattern like `runs/**/*.mcap` for
     all bags that it matches, in natural order (run_2 before run_10), each of them once. Any other argument is kept as
-    it is.
-
-    Raises:
-        InputError: a name is empty, there is no bag in a folder, or none that a pattern matches, or a folder cannot be
-            read.
+    it is. InputError where a name is empty, there is no bag in a folder, or none that a pattern matches, or a folder
+    cannot be read.
     """
     bags: list[str] = []
     for argument in arguments:
@@ -102,10 +99,8 @@ def parts_of(folder: Path) -> list[Path]:
 def files_of(path: Path) -> tuple[list[Path], dict[tuple[str, str], int], str]:
     """The files of a bag in order, how many messages each topic and type has, and what is wrong with their folder.
 
-    The numbers are empty where no metadata tell them, and what is wrong is "" where nothing is.
-
-    Raises:
-        InputError: it is not there, or is no bag.
+    The numbers are empty where no metadata tell them, and what is wrong is "" where nothing is. InputError where it is
+    not there, or is no bag.
     """
     if not path.exists():
         raise InputError(f"{path} does not exist; give {KINDS}")
@@ -186,10 +181,7 @@ def names_of(bags: Sequence[str | os.PathLike[str]]) -> list[Path]:
     """What each of several bags is called, in their order.
 
     That is `run`, or where there are several of this name `monday/run` and `tuesday/run`. Two bags of one folder that
-    differ by their suffixes alone keep these.
-
-    Raises:
-        InputError: a bag is there twice.
+    differ by their suffixes alone keep these. InputError where a bag is there twice.
     """
     paths = [Path(bag).resolve() for bag in bags]
     plain = [path.parent / name_of(path) for path in paths]

@@ -17,10 +17,8 @@ GUESSED: Final = (ODOM, IMU, *POINTS)
 
 
 def remapping(rules: Iterable[str]) -> dict[str, str]:
-    """The remapping of rules like `odom:=/cube/odom`, as `find_topics` takes it.
-
-    Raises:
-        InputError: a rule is not of that form.
+    """The remapping of rules like `odom:=/cube/odom`, as `find_topics` takes it; InputError where a rule is not of that
+    form.
     """
     remap = {}
     for rule in rules:
@@ -38,11 +36,8 @@ def find_topics(
 
     A topic is that of the remapping, else that of the input's own name. For a body without a name it may also be the
     only other one of the type. Over a fixed floor a body without any gets its own name, so that the reader says what
-    there is instead.
-
-    Raises:
-        InputError: a remapping is of no input, several topics could be an input, one topic would be two inputs, or
-            nothing is told to be the support, or none of the bodies on it.
+    there is instead. InputError where a remapping is of no input, several topics could be an input, one topic would be
+    two inputs, or nothing is told to be the support, or none of the bodies on it.
     """
     inputs = sorted(inputs, key=lambda one: one.kind == CONTACT_GEOMETRY)
     found = _remapped(inputs, remap)

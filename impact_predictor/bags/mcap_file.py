@@ -48,10 +48,8 @@ class McapFile(ChunkedFile):
         super().__init__(path)
 
     def messages(self, wanted: Collection[int]) -> Iterator[RawMessage]:
-        """The messages of some channels in the order of their log times.
-
-        Raises:
-            Flaw: the file is damaged, after all messages before that.
+        """The messages of some channels in the order of their log times; Flaw where the file is damaged, after all
+        messages before that.
         """
         yield from super().messages(wanted)
         if self._checksum is not None and not self._data_are_right(*self._checksum):
@@ -132,10 +130,8 @@ class McapFile(ChunkedFile):
         return self._file.read(length)
 
     def _take_summary(self, begin: int) -> None:
-        """Take what follows the data: the schemas and channels once more, and how many messages there are.
-
-        Raises:
-            Flaw: it is damaged, and nothing of it was taken.
+        """Take what follows the data: the schemas and channels once more, and how many messages there are; Flaw where
+        it is damaged, and nothing of it was taken.
         """
         self._file.seek(begin)
         data = self._file.read(min(LARGEST, self.size - begin))

@@ -65,10 +65,8 @@ class Bag:
         self._stack.close()
 
     def topics(self) -> dict[str, str]:
-        """The topics with the types of their messages, in order; of a damaged bag those that can be read.
-
-        Raises:
-            InputError: the bag is so damaged that none can be read.
+        """The topics with the types of their messages, in order; of a damaged bag those that can be read. InputError
+        where the bag is so damaged that none can be read.
         """
         if not self._channels:
             self._refuse_damaged()
@@ -81,12 +79,9 @@ class Bag:
     def messages(self, wanted: Mapping[str, str]) -> Iterator[BagMessage]:
         """The messages of some topics in the order of their log times, read while they are asked for.
 
-        Messages of ROS 1 are converted to CDR. What can be known before the first message is checked at once. Of a
-        bag in several files, one is read after the other.
-
-        Raises:
-            InputError: the bag lacks a topic, or a topic has another type; while reading: the bag is damaged, after
-                every message before the damage.
+        Messages of ROS 1 are converted to CDR. What can be known before the first message is checked at once. Of a bag
+        in several files, one is read after the other. InputError where the bag lacks a topic, or a topic has another
+        type, and while reading where the bag is damaged, after every message before the damage.
         """
         ros1 = [one for one in self._select(wanted) if one.encoding == "ros1"]
         to_cdr = None
@@ -97,10 +92,8 @@ class Bag:
         return self._stream(wanted, to_cdr)
 
     def decoders(self, wanted: Mapping[str, str]) -> dict[str, Callable[[bytes], Any]]:
-        """What makes objects of the messages (in CDR) of some topics, by the definitions that the bag itself holds.
-
-        Raises:
-            InputError: the bag lacks a topic or the definition of a type, or a topic has another type.
+        """What makes objects of the messages (in CDR) of some topics, by the definitions that the bag itself holds;
+        InputError where the bag lacks a topic or the definition of a type, or a topic has another type.
         """
         from .definitions import typestore_of
 
@@ -118,10 +111,8 @@ class Bag:
         return selected
 
     def _why_lacking(self, topic: str, type_name: str) -> str:
-        """Why a topic cannot be read as a type.
-
-        Raises:
-            InputError: the bag is damaged, and the topic may be in what is lost.
+        """Why a topic cannot be read as a type; InputError where the bag is damaged, and the topic may be in what is
+        lost.
         """
         of_topic = [one for one in self._channels if one.topic == topic]
         for one in of_topic or [one for one in self._channels if one.type_name == type_name]:

@@ -60,10 +60,8 @@ class SqliteFile:
         self._database.close()
 
     def messages(self, wanted: Collection[int]) -> Iterator[RawMessage]:
-        """The messages of some topics in the order of their log times.
-
-        Raises:
-            Flaw: the file is damaged, after all messages before that.
+        """The messages of some topics in the order of their log times; Flaw where the file is damaged, after all
+        messages before that.
         """
         last = None
         flaw = self.flaw

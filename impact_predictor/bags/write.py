@@ -47,11 +47,8 @@ class BagWriter:
         self._connections: dict[tuple[str, str], Connection] = {}
 
     def __enter__(self) -> BagWriter:
-        """Begin the bag.
-
-        Raises:
-            InputError: the place is taken by something that this class did not write, cannot be written, or is in no
-                folder that there is.
+        """Begin the bag; InputError where the place is taken by something that this class did not write, cannot be
+        written, or is in no folder that there is.
         """
         if not self.path.absolute().parent.exists():
             raise InputError(f"the folder of {self.path} does not exist; make it, or give another name")
@@ -67,11 +64,7 @@ class BagWriter:
         return self
 
     def write(self, topic: str, type_name: str, log_time: int, data: bytes) -> None:
-        """Add a message in CDR; `log_time` in ns.
-
-        Raises:
-            InputError: the disk does not take it.
-        """
+        """Add a message in CDR; `log_time` in ns. InputError where the disk does not take it."""
         connection = self._connections.get((topic, type_name))
         if connection is None:
             if type_name.startswith(PACKAGE) and type_name not in self._typestore.fielddefs:
@@ -161,10 +154,8 @@ def _is_marked(file: Path) -> bool:
 
 
 def _remove_partial(partial: Path) -> None:
-    """Remove what this class leaves in a partial output, file by file: never anything else.
-
-    Raises:
-        InputError: something else is in there.
+    """Remove what this class leaves in a partial output, file by file: never anything else; InputError where something
+    else is in there.
     """
     if not partial.exists():
         return

@@ -102,10 +102,8 @@ def calibrate(
     lengths is the loss of the spatial median: a touchdown that rigid theory does not explain pulls no more than others.
     Intervals are those of the bootstrap over blocks (percentiles), the same for the same `seed`; each is wider by what
     changes the mean error by a thousandth of the speed. A coefficient that the touchdowns do not tell stays as it was.
-    `tell` takes now and then how many impacts are solved, from 0.
-
-    Raises:
-        InputError: there are too few touchdowns, or their bodies have several frictions, restitutions or merge times.
+    `tell` takes now and then how many impacts are solved, from 0. InputError where there are too few touchdowns, or
+    their bodies have several frictions, restitutions or merge times.
     """
     touchdowns = tuple(one for record in records for one in record)
     if (number := len(touchdowns)) < NEEDED:

@@ -77,10 +77,8 @@ def identify(
     """Find mass centre and inertia of the body of a scene, with 1, 3 or 6 moments.
 
     Motions that are one, turned about the vertical, count once. Intervals are those of the bootstrap over motions
-    (percentiles), the same for the same `seed`. `tell` takes how many fits are done, from 0.
-
-    Raises:
-        InputError: there are too few impacts of a single point, or the inertia that is found is that of no body.
+    (percentiles), the same for the same `seed`. `tell` takes how many fits are done, from 0. InputError where there are
+    too few impacts of a single point, or the inertia that is found is that of no body.
     """
     single = distinct(scene, motions)
     records = [MotionRecord(scene, motion) for motion in single]

@@ -104,11 +104,7 @@ def invariants(count: int, seed: int, law: str, resume: str | None, as_json: boo
 
 
 def go_on(soak: Soak, file: str) -> None:
-    """Go on from where the file says.
-
-    Raises:
-        InputError: it does not say so.
-    """
+    """Go on from where the file says; InputError where it does not say so."""
     try:
         soak.go_on(json.loads(Path(file).read_text(encoding="utf-8")))
     except (OSError, KeyError, TypeError, ValueError) as error:

@@ -161,9 +161,7 @@ def read_all(
     bags: tuple[str, ...], scenes: dict[str, Scene], topics: dict[str, str], monitor_of: Callable[[dict[str, Scene]], M]
 ) -> tuple[list[M], list[Result]]:
     """Each bag that can be used, read by a monitor of its own, and its replay; what is wrong with others is said.
-
-    Raises:
-        InputError: the only bag cannot be used.
+    InputError where the only bag cannot be used.
     """
     from ..bags.replay import replay
     from .progress import progress

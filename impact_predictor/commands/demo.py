@@ -112,10 +112,8 @@ def demo(output: Path, tosses: int | None) -> None:
 
 
 def play(bag: Path, scene: Path, tosses: int, output: Path) -> None:
-    """Play the first tosses of a bag to the node, and record what it publishes.
-
-    Raises:
-        InputError: a process ended before its time, or did not start.
+    """Play the first tosses of a bag to the node, and record what it publishes; InputError where a process ended before
+    its time, or did not start.
     """
     from ..bags.read import read_messages, topics
     from ..ros.player import PLAYED, PLAYING, timed
@@ -156,10 +154,8 @@ def play(bag: Path, scene: Path, tosses: int, output: Path) -> None:
 
 
 def read_recording(path: Path) -> list[TouchdownRow]:
-    """The touchdowns that the node has settled, with the cost that it reported next, as in its diagnostics.
-
-    Raises:
-        InputError: nothing can be read there.
+    """The touchdowns that the node has settled, with the cost that it reported next, as in its diagnostics; InputError
+    where nothing can be read there.
     """
     from ..bags.read import read_messages, topics
     from ..report.touchdowns import row_of_message

@@ -112,10 +112,8 @@ def unit_of(scene: Scene, spray: tuple[float, float], *, on_deck: bool) -> Lashe
 
 
 def largest_felt(bag: str, scenes: dict[str, Scene], remap: tuple[str, ...]) -> dict[str, Vector3]:
-    """The largest accelerations (m/s^2) along, across and beyond gravity that the deck of a bag gave each unit.
-
-    Raises:
-        InputError: the bag cannot be used, or the support does not move.
+    """The largest accelerations (m/s^2) along, across and beyond gravity that the deck of a bag gave each unit;
+    InputError where the bag cannot be used, or the support does not move.
     """
     from ..bags.replay import remapping
     from ..prediction.felt import FeltMonitor

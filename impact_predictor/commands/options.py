@@ -79,10 +79,8 @@ def together(*options: Callable[[Any], Any]) -> Callable[[F], F]:
 
 
 def refuse_given(names: Iterable[str], why: str) -> None:
-    """Refuse options, by the names of their values, that would change nothing, with a reason.
-
-    Raises:
-        UsageError: one was given.
+    """Refuse options, by the names of their values, that would change nothing, with a reason; UsageError where one was
+    given.
     """
     context = click.get_current_context()
     for name in names:

@@ -53,10 +53,8 @@ class ReplayReport:
     """Takes what became of each bag, says it, and hands it on to what is made of all of them; it keeps none."""
 
     def __init__(self, bags: Sequence[str], wanted: Wanted, stack: ExitStack) -> None:
-        """Begin, so that what cannot be made is refused before a bag is read; the stack ends the table.
-
-        Raises:
-            InputError: something cannot be written.
+        """Begin, so that what cannot be made is refused before a bag is read; the stack ends the table. InputError
+        where something cannot be written.
         """
         self.number = 0
         self.replayed = 0

@@ -133,10 +133,8 @@ def replay(
 
 
 def outputs_of(bags: Sequence[str], output: str | None) -> list[Path | None]:
-    """Where the predictions of each bag go: one output, or a file for each of several bags in a folder.
-
-    Raises:
-        InputError: a bag is there twice, or there is no place for the folder.
+    """Where the predictions of each bag go: one output, or a file for each of several bags in a folder; InputError
+    where a bag is there twice, or there is no place for the folder.
     """
     if output is None:
         return [None for _ in bags]
@@ -155,10 +153,8 @@ def outputs_of(bags: Sequence[str], output: str | None) -> list[Path | None]:
 
 @contextmanager
 def folders_of(outputs: Sequence[Path | None]) -> Iterator[None]:
-    """The folders of several outputs; those that were made for them and are empty at the end are removed.
-
-    Raises:
-        InputError: a folder cannot be made.
+    """The folders of several outputs; those that were made for them and are empty at the end are removed. InputError
+    where a folder cannot be made.
     """
     # That of a single output must be there.
     files = [file for file in outputs if file is not None] if len(outputs) > 1 else []
@@ -193,10 +189,8 @@ def one_by_one(job: Job, bags: Sequence[str], outputs: Sequence[Path | None]) ->
 def on_workers(
     job: Job, bags: Sequence[str], outputs: Sequence[Path | None], workers: int, scheduler: str | None
 ) -> Generator[BagOutcome]:
-    """What became of each bag, in their order, replayed by so many processes here or by the workers of a scheduler.
-
-    Raises:
-        InputError: Dask is missing, or the scheduler does not answer, has no workers, or is lost.
+    """What became of each bag, in their order, replayed by so many processes here or by the workers of a scheduler;
+    InputError where Dask is missing, or the scheduler does not answer, has no workers, or is lost.
     """
     from ..fleet.cluster import Fleet, connected
     from ..fleet.job import renamed

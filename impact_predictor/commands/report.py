@@ -72,11 +72,7 @@ def report(output: Path | None, quick: bool, as_json: bool) -> None:
 
 
 def write(folder: Path, fields: dict[str, Any]) -> None:
-    """Write JSON, CSV and page.
-
-    Raises:
-        InputError: a file cannot be written.
-    """
+    """Write JSON, CSV and page; InputError where a file cannot be written."""
     from ..report.accuracy.page import accuracy_page
     from ..report.page import script_inside
 

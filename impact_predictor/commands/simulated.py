@@ -58,11 +58,8 @@ class Products(NamedTuple):
     plot: str | None = None
 
     def check(self) -> None:
-        """Refuse what cannot be made, before any work is done.
-
-        Raises:
-            click.UsageError: a rate is given, and no bag is.
-            InputError: a picture is of no known format, or its folder does not exist.
+        """Refuse what cannot be made, before any work is done; click.UsageError where a rate is given, and no bag is;
+        InputError where a picture is of no known format, or its folder does not exist.
         """
         if self.output is None:
             refuse_given(["rate"], "is that of a bag: give -o BAG too")

@@ -86,11 +86,8 @@ def read_parameters(path: str | os.PathLike[str], node: str = "impact_predictor"
     """The parameters that a file sets for a node, by their full names, as in {"body.mass": 0.37}.
 
     `node` may have a namespace. Where several sections fit the node (`/**`, `/*`, its name), the last one in the file
-    wins, as in rclpy.
-
-    Raises:
-        InputError: the file is not there, is not a parameter file, says nothing for the node, or has a value that is
-            ambiguous.
+    wins, as in rclpy. InputError where the file is not there, is not a parameter file, says nothing for the node, or
+    has a value that is ambiguous.
     """
     path = Path(path)
     try:
@@ -123,10 +120,8 @@ def read_parameters(path: str | os.PathLike[str], node: str = "impact_predictor"
 
 
 def read_values(path: str | os.PathLike[str]) -> dict[str, Value]:
-    """The values of all parameters with a file: those that it sets, and the defaults of the others.
-
-    Raises:
-        InputError: as in `read_parameters`, or a parameter is wrong.
+    """The values of all parameters with a file: those that it sets, and the defaults of the others; InputError as of
+    `read_parameters`, or where a parameter is wrong.
     """
     given = read_parameters(path)
     try:

@@ -57,10 +57,7 @@ class _Given:
 def check_body(body: str, values: Mapping[str, Any], given: Collection[str]) -> None:
     """Whether the values that hold for a body fit together.
 
-    `given` has the names that were given, and so shows which values were chosen.
-
-    Raises:
-        InputError: they do not fit.
+    `given` has the names that were given, and so shows which values were chosen. InputError where they do not fit.
     """
     one = _Given(body, values, given)
     _check_feet(one)

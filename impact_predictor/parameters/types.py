@@ -80,10 +80,8 @@ _TYPES: Final[dict[str, type]] = {"bool": bool, "integer": int, "double": float,
 
 
 def check(parameter: Parameter, value: object) -> Value:
-    """The value of a parameter, a list as a tuple.
-
-    Raises:
-        InputError: it has the wrong type, is out of range, or has a flaw.
+    """The value of a parameter, a list as a tuple; InputError where it has the wrong type, is out of range, or has a
+    flaw.
     """
     kind, is_list = parameter.kind.removesuffix("_array"), parameter.kind.endswith("_array")
     is_sequence = isinstance(value, Sequence) and not isinstance(value, str | bytes)

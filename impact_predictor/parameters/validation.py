@@ -35,11 +35,9 @@ def validate(values: Mapping[str, object]) -> dict[str, Value]:
     With `bodies`, those that are given for one of them follow as <body>.<parameter>, and of a parameter without default
     that is given for each of them alone there is no common value; nor of one that the model of a machine tells, where
     it is not given. Parameters that every ROS node has are passed over, and `foreign` ones.
-    `impact_predictor.prediction.scene.scenes_of` makes the scenes of them.
-
-    Raises:
-        InputError: a name is nearly that of a parameter, a value has the wrong type or is out of range, one without
-            default is missing, or values do not fit together.
+    `impact_predictor.prediction.scene.scenes_of` makes the scenes of them. InputError where a name is nearly that of a
+    parameter, a value has the wrong type or is out of range, one without default is missing, or values do not fit
+    together.
     """
     bodies: Any = check(PARAMETERS["bodies"], values.get("bodies", ()))
     passed_over = set(foreign(values))
@@ -94,19 +92,15 @@ def _near(name: str, bodies: Sequence[str], likeness: float) -> list[str]:
 
 
 def parameter_of(name: str) -> Parameter:
-    """The parameter of a name that `validate` has let pass, which may begin with that of a body.
-
-    Raises:
-        KeyError: there is none.
+    """The parameter of a name that `validate` has let pass, which may begin with that of a body; KeyError where there
+    is none.
     """
     return PARAMETERS.get(name) or PARAMETERS[name.partition(".")[2]]
 
 
 def check_change(before: Mapping[str, Any], after: Mapping[str, Any]) -> None:
-    """Whether the node may go on from some validated values to others.
-
-    Raises:
-        InputError: a parameter has changed that cannot while the node runs.
+    """Whether the node may go on from some validated values to others; InputError where a parameter has changed that
+    cannot while the node runs.
     """
     for name in {**before, **after}:
         why = parameter_of(name).fixed
@@ -117,11 +111,7 @@ def check_change(before: Mapping[str, Any], after: Mapping[str, Any]) -> None:
 
 
 def _parameter_of(name: str, bodies: Sequence[str]) -> Parameter:
-    """The parameter of a name that was given.
-
-    Raises:
-        InputError: there is none.
-    """
+    """The parameter of a name that was given; InputError where there is none."""
     if name in PARAMETERS:
         return PARAMETERS[name]
     body, _, common = name.partition(".")

@@ -37,11 +37,7 @@ class Earlier:
     """An earlier run of one bag or of several, as `replay` printed it with --json."""
 
     def __init__(self, path: str | os.PathLike[str], bags: int = 1) -> None:
-        """Read it, to compare so many bags with it.
-
-        Raises:
-            InputError: it cannot be read, or is the run of one bag only.
-        """
+        """Read it, to compare so many bags with it; InputError where it cannot be read, or is the run of one bag."""
         self.path = Path(path)
         try:
             answer = json.loads(self.path.read_bytes())
@@ -60,10 +56,8 @@ class Earlier:
             )
 
     def touchdowns_of(self, bag: str | os.PathLike[str], name: str | os.PathLike[str] = "") -> Sequence[TouchdownRow]:
-        """The touchdowns of a bag: of the run of the same path, or of the same `name` (`names_of`) among the runs.
-
-        Raises:
-            InputError: it has none of this bag.
+        """The touchdowns of a bag: of the run of the same path, or of the same `name` (`names_of`) among the runs;
+        InputError where it has none of this bag.
         """
         if "" in self._runs:
             return self._runs[""]

@@ -125,10 +125,8 @@ SUBJECTS: Final = {
 
 
 def fixed_values(subject: Subject, axes: tuple[Axis, Axis], given: Mapping[str, float]) -> dict[str, float]:
-    """The parameters that are the same all over the map: as given, else their defaults.
-
-    Raises:
-        InputError: an axis is none of the parameters, or is given as a number too, or has no extent.
+    """The parameters that are the same all over the map: as given, else their defaults; InputError where an axis is
+    none of the parameters, or is given as a number too, or has no extent.
     """
     for axis in axes:
         option = option_of(axis.name)
@@ -158,10 +156,8 @@ def fixed_values(subject: Subject, axes: tuple[Axis, Axis], given: Mapping[str, 
 
 
 def problem_at(subject: Subject, values: Mapping[str, Any]) -> tuple[TwoPointBody, Twist]:
-    """The body with these parameters, and its twist right before the impact.
-
-    Raises:
-        InputError: a parameter is out of its range.
+    """The body with these parameters, and its twist right before the impact; InputError where a parameter is out of its
+    range.
     """
     values = {"friction": 0.0, **values}
     frictions = {name: values.pop(name, values["friction"]) for name in ("friction_old", "friction_new")}
@@ -226,10 +222,7 @@ def map_modes(
 ) -> ModeMap:
     """The modes of the body `name` over `resolution` cells along each axis; `fixed` are all other parameters.
 
-    `tell` is told how many cells are done.
-
-    Raises:
-        InputError: a parameter is out of its range.
+    `tell` is told how many cells are done. InputError where a parameter is out of its range.
     """
     subject, columns, rows = SUBJECTS[name], middles(x, resolution), middles(y, resolution)
     step, blocks = max(1, CELLS_AT_ONCE // resolution), []
@@ -261,10 +254,8 @@ def shares(modes: ModeMap) -> dict[Mode, float]:
 
 
 def write_csv(path: Path, modes: ModeMap) -> None:
-    """Write a line for each cell: its parameters, and the fields of a ModeMap.
-
-    Raises:
-        InputError: the file cannot be written.
+    """Write a line for each cell: its parameters, and the fields of a ModeMap; InputError where the file cannot be
+    written.
     """
     x, y = (middles(axis, len(modes.mode)).tolist() for axis in (modes.x, modes.y))
     names = [mode.name for mode in Mode]

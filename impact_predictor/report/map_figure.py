@@ -120,11 +120,7 @@ def _body_at(modes: ModeMap, x: NDArray[np.float64], y: NDArray[np.float64]) -> 
 
 
 def write_map(path: Path, modes: ModeMap) -> None:
-    """Draw a map into a PNG or SVG file.
-
-    Raises:
-        InputError: the file cannot be written.
-    """
+    """Draw a map into a PNG or SVG file; InputError where the file cannot be written."""
     with picture(path, 10.0, 6.0) as figure:
         title = SUBJECTS[modes.subject].title
         what = f"{title}: what follows when it turns about the old contact A and strikes the new one, B"

@@ -37,10 +37,8 @@ PICTURE: Final = "picture that can be drawn", (".png", ".svg")
 
 @contextmanager
 def picture(path: str | os.PathLike[str], width: float, height: float) -> Iterator[Figure]:
-    """A figure of so many inches, which is written as PNG or SVG when it is drawn: the same bytes every time.
-
-    Raises:
-        InputError: the file cannot be written, or is of another format.
+    """A figure of so many inches, which is written as PNG or SVG when it is drawn: the same bytes every time;
+    InputError where the file cannot be written, or is of another format.
     """
     path = named(path, *PICTURE)
     with matplotlib.rc_context(STYLE):

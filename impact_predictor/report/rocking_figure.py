@@ -21,10 +21,8 @@ _POINTS: Final = 2000
 
 
 def write_rocking_figure(path: str | os.PathLike[str], rockings: Sequence[Rocking]) -> None:
-    """Draw angular velocities, angles and contacts of motions into a PNG or SVG file.
-
-    Raises:
-        InputError: the file cannot be written, or is of another format.
+    """Draw angular velocities, angles and contacts of motions into a PNG or SVG file; InputError where the file cannot
+    be written, or is of another format.
     """
     rocker, run = rockings[0]
     bodies = f"{rocker.name}s" if len(rockings) > 1 else f"a {rocker.name}, {rocker.label},"

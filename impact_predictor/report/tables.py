@@ -80,10 +80,8 @@ class RowTable:
 @contextmanager
 def table_file(path: str | Path, columns: Columns) -> Iterator[RowTable]:
     """A table in a Parquet or CSV file; it has its name when it is whole, and after an exception an older one stays.
-
-    Raises:
-        InputError: pyarrow is missing, the name does not end in .parquet or .csv, or its folder does not exist; or it
-            cannot be written.
+    InputError where pyarrow is missing, the name does not end in .parquet or .csv, or its folder does not exist; or it
+    cannot be written.
     """
     path = named(path, "table", (".parquet", ".csv"))
     need("pyarrow")

@@ -232,11 +232,7 @@ def row_as_json(row: TouchdownRow) -> dict[str, Any]:
 
 
 def row_of_json(entry: Mapping[str, Any]) -> TouchdownRow:
-    """The row that `row_as_json` wrote.
-
-    Raises:
-        KeyError, TypeError: it is none.
-    """
+    """The row that `row_as_json` wrote; KeyError or TypeError where it is none."""
     values: dict[str, Any] = {}
     for key, field in FIELDS.items():
         if (value := entry.get(key)) is not None:
@@ -249,10 +245,8 @@ def row_of_json(entry: Mapping[str, Any]) -> TouchdownRow:
 
 
 def row_of_message(body: str, values: Mapping[str, str], cost: float | None = None) -> TouchdownRow:
-    """The row of the values of a message on `~/score`, as `decode_diagnostic_array` reads them; `cost` in s.
-
-    Raises:
-        KeyError, TypeError, ValueError: it is none.
+    """The row of the values of a message on `~/score`, as `decode_diagnostic_array` reads them; `cost` in s. KeyError,
+    TypeError or ValueError where it is none.
     """
     entry: dict[str, Any] = {"body": body}
     for key, field in FIELDS.items():

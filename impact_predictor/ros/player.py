@@ -161,9 +161,7 @@ def _recording(node: Any, output: str, stop: Stop) -> Iterator[None]:
 
 def _await_others(node: Any, publishers: list[Any], recorded: Iterable[str], stop: Stop) -> bool:
     """Wait until every topic has a subscriber, or a publisher if it is recorded; whether the stop left time for it.
-
-    Raises:
-        InputError: a topic has none.
+    InputError where a topic has none.
     """
     patience = time.monotonic() + DISCOVERY
     while True:

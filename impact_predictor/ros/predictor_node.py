@@ -42,11 +42,8 @@ class PredictorNode(Node):
     """Translates between topics and the monitor of the scenes."""
 
     def __init__(self, is_over: Callable[[], bool] = bool, args: list[str] | None = None) -> None:
-        """Take parameters and topics as `args` say, with which ROS was initialised too.
-
-        Raises:
-            InputError: a parameter is wrong.
-            KeyboardInterrupt: `is_over` says so while the impact laws are compiled, which may take minutes.
+        """Take parameters and topics as `args` say, with which ROS was initialised too; InputError where a parameter is
+        wrong; KeyboardInterrupt where `is_over` says so while the impact laws are compiled, which may take minutes.
         """
         try:
             super().__init__(
@@ -168,10 +165,8 @@ class NodeParameters:
     """
 
     def __init__(self, node: Node, args: list[str] | None) -> None:
-        """Declare every parameter on a node that was made with those which the user gave, in the arguments.
-
-        Raises:
-            InputError: the user gave an unknown parameter or a bad value, or left out one that has no default.
+        """Declare every parameter on a node that was made with those which the user gave, in the arguments; InputError
+        where the user gave an unknown parameter or a bad value, or left out one that has no default.
         """
         parameters: Mapping[str, Any] = node.get_parameters_by_prefix("")
         self._node = node
@@ -208,10 +203,8 @@ class NodeParameters:
         return {name: value for name, value in values.items() if name not in passed_over}
 
     def changed(self, parameters: Sequence[NodeParameter]) -> dict[str, Value]:
-        """The values that would hold with others for some parameters; nothing is changed.
-
-        Raises:
-            InputError: one is refused as at the start, or cannot change while the node runs.
+        """The values that would hold with others for some parameters; nothing is changed. InputError where one is
+        refused as at the start, or cannot change while the node runs.
         """
         others = self.ours(parameters)
         for one in parameters:

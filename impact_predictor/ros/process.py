@@ -208,11 +208,7 @@ def executor_of(node: Node, kind: str) -> Any:
 
 
 def message_class(type_name: str) -> Any:
-    """The class of a message, of a name like nav_msgs/msg/Odometry.
-
-    Raises:
-        InputError: it is not installed.
-    """
+    """The class of a message, of a name like nav_msgs/msg/Odometry; InputError where it is not installed."""
     package, _, name = type_name.split("/")
     try:
         return getattr(importlib.import_module(f"{package}.msg"), name)

@@ -24,10 +24,8 @@ _PARTICIPANTS: Final = 10
 
 
 def ros_environment() -> dict[str, str]:
-    """The environment of processes that see each other on this machine, and nobody else.
-
-    Raises:
-        InputError: every ROS domain is in use.
+    """The environment of processes that see each other on this machine, and nobody else; InputError where every ROS
+    domain is in use.
     """
     for domain in random.sample(_DOMAINS, len(_DOMAINS)):
         if is_free(domain):
@@ -105,20 +103,12 @@ class Child:
         return _content(self._errors)
 
     def check(self) -> None:
-        """See that it runs.
-
-        Raises:
-            InputError: it has ended.
-        """
+        """See that it runs; InputError where it has ended."""
         if self.ended:
             raise self._failure()
 
     def end(self) -> None:
-        """Ask it to end, and wait until it has.
-
-        Raises:
-            InputError: it ended with another status than 0, or not at all.
-        """
+        """Ask it to end, and wait until it has; InputError where it ended with another status than 0, or not at all."""
         if not self.ended:
             self._process.send_signal(signal.SIGINT)
         try:

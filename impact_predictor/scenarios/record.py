@@ -141,10 +141,8 @@ def write_record(
 
     The topics are `/odom` and `/contact_geometry`, with several bodies `/<name>/odom` and `/<name>/contact_geometry`,
     and `TRUTH_TOPIC`. The plane of the motions is x forward and z up of the frame `FRAME`. Stamps count from the
-    beginning of a motion. `tell` takes now and then how many seconds are done.
-
-    Raises:
-        InputError: the bag cannot be written.
+    beginning of a motion. `tell` takes now and then how many seconds are done. InputError where the bag cannot be
+    written.
     """
     alone = len(actors) == 1
     write_messages(path, [_messages_of(actor, "" if alone else f"/{actor.name}", rate) for actor in actors], tell)
@@ -157,10 +155,7 @@ def write_messages(
 ) -> None:
     """Write a bag of messages, each stream of them ordered, while they are made: a long record takes no more memory.
 
-    `tell` takes now and then how many seconds of it are done.
-
-    Raises:
-        InputError: the bag cannot be written.
+    `tell` takes now and then how many seconds of it are done. InputError where the bag cannot be written.
     """
     with BagWriter(path) as writer:
         for count, (log_time, topic, type_name, data) in enumerate(_by_time(*streams), 1):

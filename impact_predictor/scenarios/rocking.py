@@ -97,9 +97,7 @@ def release(
     """Let a body go at rest, turned by `angle` in rad from the pose in which both contacts are closed.
 
     It stands on the contact behind where the angle is positive. `slope` in rad, uphill is forwards; `duration` in s.
-
-    Raises:
-        InputError: a number is out of its range.
+    InputError where a number is out of its range.
     """
     refuse({"angle": angle, "slope": slope}, lambda value: abs(value) < 0.5 * pi, "an angle between -90 and 90 degrees")
     refuse({"gravity": gravity, "duration": duration}, lambda value: 0.0 < value < 1e9, "a number between 0 and 1e9")

@@ -197,10 +197,8 @@ def encode_truth(event: TrueImpact | TrueOnset | TrueLanding, frame_id: str) -> 
 
 
 def decode_truths(kind: type[Happened], data: bytes) -> list[Happened]:
-    """The events of a kind in the bytes of a diagnostic_msgs/DiagnosticArray.
-
-    Raises:
-        MalformedMessage: the bytes are no such message, or do not tell what they should.
+    """The events of a kind in the bytes of a diagnostic_msgs/DiagnosticArray; MalformedMessage where the bytes are no
+    such message, or do not tell what they should.
     """
     try:
         return [_event(kind, status.values) for status in decode_diagnostic_array(data)]

@@ -164,9 +164,7 @@ def roll(wheel: Wheel, rate: float = 0.0, steps: int | None = 20, duration: floa
 
     It is followed for `duration` s, until it rests, or until it is over the spoke that `steps` of them lead to, ahead
     or backwards. `law` is that of `solve_impact`; the spokes slip where friction does not hold them, and do not bounce.
-
-    Raises:
-        InputError: a number is out of its range.
+    InputError where a number is out of its range.
     """
     check_wheel(wheel)
     refuse({"rate": rate}, lambda value: abs(value) < 1e9, "a finite number")
@@ -198,11 +196,7 @@ def roll(wheel: Wheel, rate: float = 0.0, steps: int | None = 20, duration: floa
 
 
 def check_wheel(wheel: Wheel) -> None:
-    """Refuse a wheel that cannot be.
-
-    Raises:
-        InputError: a number is out of its range, or no whole number of spokes fits.
-    """
+    """Refuse, by an InputError, a wheel of which a number is out of its range, or no whole number of spokes fits."""
     hub = wheel.hub
     positive(mass=hub.mass, inertia=hub.inertia, leg=hub.leg, gravity=hub.gravity)
     not_negative(friction=hub.friction)

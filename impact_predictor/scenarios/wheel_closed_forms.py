@@ -104,10 +104,8 @@ def stance_friction(hub: Hub, angle: float, rate: float) -> float:
 def least_friction(wheel: Wheel) -> float:
     """The smallest friction coefficient with which nothing slips in steady rolling: of the impact or of the stance.
 
-    inf where none is enough, for the ground would have to pull: the wheel slips or takes off.
-
-    Raises:
-        ValueError: the wheel stops.
+    inf where none is enough, for the ground would have to pull: the wheel slips or takes off. ValueError where the
+    wheel stops.
     """
     rolling = steady(wheel)
     if rolling is None:

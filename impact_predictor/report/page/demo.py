@@ -35,11 +35,7 @@ def live_answer(rows: Sequence[TouchdownRow]) -> BagAnswer:
 
 
 def write_demo_page(path: Path, tosses: Shown, deck: Shown, robot: Shown) -> None:
-    """Write the page, which needs no network and no other file.
-
-    Raises:
-        InputError: it cannot be written.
-    """
+    """Write the page, which needs no network and no other file; InputError where it cannot be written."""
     live, watched, walked = [ReplayFacts([one.answer]) for one in (tosses, deck, robot)]
     told = {one.question: one for facts in (watched, walked) for one in facts.headlines()}
     sections = (

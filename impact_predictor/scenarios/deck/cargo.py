@@ -81,19 +81,15 @@ class Span(NamedTuple):
 
 
 def units_of(scenes: Mapping[str, Scene]) -> list[CargoUnit]:
-    """The units of a parameter file's scenes, see `prediction.scene.scenes_of`.
-
-    Raises:
-        InputError: a unit cannot be simulated in the deck's plane.
+    """The units of a parameter file's scenes, see `prediction.scene.scenes_of`; InputError where a unit cannot be
+    simulated in the deck's plane.
     """
     return [unit_of(name or ALONE, scene) for name, scene in scenes.items()]
 
 
 def unit_of(name: str, scene: Scene) -> CargoUnit:
-    """The unit of one scene, standing where its `place` and `yaw` tell, on the deck.
-
-    Raises:
-        InputError: it cannot be simulated in the deck's plane.
+    """The unit of one scene, standing where its `place` and `yaw` tell, on the deck; InputError where it cannot be
+    simulated in the deck's plane.
     """
     if hypot(scene.normal[0], scene.normal[1]) > NEAR or scene.normal[2] <= 0.0:
         raise InputError(

@@ -137,10 +137,8 @@ class _States(NamedTuple):
 
 
 def follow_compliant(unit: CargoUnit, deck: DeckMotion, duration: float, begin: float = 0.0) -> Iterator[Span]:
-    """The motion of a unit on points from where it stands, one span after the other; as `cargo.follow`.
-
-    Raises:
-        InputError: it stands on a line.
+    """The motion of a unit on points from where it stands, one span after the other; as `cargo.follow`. InputError
+    where it stands on a line.
     """
     return _Compliant(unit, deck).follow(duration, begin)
 

@@ -48,10 +48,8 @@ class Waves(NamedTuple):
 
 
 def density(state: SeaState, frequencies: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Spectral density in m^2 s/rad at frequencies above 0 in rad/s (DNV-RP-C205, 3.5.5.1 and 3.5.5.2).
-
-    Raises:
-        InputError: a number of the sea state is out of its range.
+    """Spectral density in m^2 s/rad at frequencies above 0 in rad/s (DNV-RP-C205, 3.5.5.1 and 3.5.5.2); InputError
+    where a number of the sea state is out of its range.
     """
     height, period, gamma = checked(state)
     peak = 2.0 * pi / period
@@ -68,10 +66,8 @@ def waves_of(state: SeaState, seed: int, count: int = WAVES) -> Waves:
     """Waves whose significant height is that of the sea state to rounding.
 
     Each has the energy of one of `count` equal bands of `RANGE`, a random phase and a random frequency in its band: no
-    two are multiples of a common one, so the sea does not repeat itself. The same seed makes the same sea.
-
-    Raises:
-        InputError: a number of the sea state is out of its range.
+    two are multiples of a common one, so the sea does not repeat itself. The same seed makes the same sea. InputError
+    where a number of the sea state is out of its range.
     """
     peak = 2.0 * pi / checked(state).period
     band = (RANGE[1] - RANGE[0]) * peak / count
@@ -84,10 +80,8 @@ def waves_of(state: SeaState, seed: int, count: int = WAVES) -> Waves:
 
 
 def directions(waves: Waves, mean: float, spread: float, seed: int) -> NDArray[np.float64]:
-    """The directions (n,) of waves about a mean one, normally distributed, in degrees: each wave has its own.
-
-    Raises:
-        InputError: the mean is no angle, or the spread is out of its range.
+    """The directions (n,) of waves about a mean one, normally distributed, in degrees: each wave has its own;
+    InputError where the mean is no angle, or the spread is out of its range.
     """
     if not -360.0 <= mean <= 360.0 or not 0.0 <= spread <= 60.0:
         raise InputError(
@@ -98,11 +92,7 @@ def directions(waves: Waves, mean: float, spread: float, seed: int) -> NDArray[n
 
 
 def checked(state: SeaState) -> SeaState:
-    """The sea state, if its numbers make sense.
-
-    Raises:
-        InputError: one does not.
-    """
+    """The sea state, if its numbers make sense; InputError where one does not."""
     height, period, gamma = state
     if not 0.0 < height <= 40.0:
         raise InputError(f"the significant wave height is {height}; give metres above 0, up to 40")

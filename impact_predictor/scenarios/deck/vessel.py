@@ -133,10 +133,8 @@ def read_deck(path: str | os.PathLike[str], topic: str = "", gravity: float = 9.
     """The deck of a bag's odometry.
 
     Its place counts from the first sample, its yaw, surge and sway from its mean heading; splines of degree 5 go
-    through the samples. Without `topic` the bag's only nav_msgs/Odometry is taken.
-
-    Raises:
-        InputError: the bag cannot be read, or has no such samples.
+    through the samples. Without `topic` the bag's only nav_msgs/Odometry is taken. InputError where the bag cannot be
+    read, or has no such samples.
     """
     from scipy.interpolate import make_interp_spline
 

@@ -90,10 +90,8 @@ class Voyage(NamedTuple):
 
 
 def gravity_of(scenes: Mapping[str, Scene]) -> float:
-    """Gravity of the scenes of a moving deck in m/s^2.
-
-    Raises:
-        InputError: the support does not move, or gravity is not along -z of the world.
+    """Gravity of the scenes of a moving deck in m/s^2; InputError where the support does not move, or gravity is not
+    along -z of the world.
     """
     scene = shared_by(scenes)
     x, y, z = scene.gravity
@@ -119,10 +117,8 @@ def sail(
     `contacts` are rigid, by the impact law of each scene and in the transverse plane, or compliant (see `compliant`);
     auto: they are rigid on a deck that moves in that plane alone, but for units with lashings or chocks. Drums lie in
     their chocks and have rigid ones in any case. A unit that toppled stands again after `restand` s where it stood at
-    first. `tell` takes now and then how many seconds are done.
-
-    Raises:
-        InputError: a unit cannot be simulated, a number is out of its range, or the bag cannot be written.
+    first. `tell` takes now and then how many seconds are done. InputError where a unit cannot be simulated, a number is
+    out of its range, or the bag cannot be written.
     """
     if not 0.0 < duration <= _LONGEST:
         raise InputError(f"the duration is {duration}; give seconds above 0, up to a week")
@@ -199,10 +195,8 @@ def _lying_poses(fallen: Span, times: NDArray[np.float64]) -> Poses:
 
 
 def _extremes(deck: DeckMotion, duration: float) -> tuple[float, float, float]:
-    """The largest roll and pitch in rad, and the largest push along the deck as a part of the weight on it.
-
-    Raises:
-        InputError: no deck with cargo on it moves like that.
+    """The largest roll and pitch in rad, and the largest push along the deck as a part of the weight on it; InputError
+    where no deck with cargo on it moves like that.
     """
     times = np.arange(0.0, duration, deck.period / 16.0)
     tilted, lateral = np.zeros(2), 0.0

@@ -83,11 +83,7 @@ NAMES: Final = tuple(_NAMED)
 
 
 def robot_named(name: str) -> RobotFiles:
-    """The files of a robot of example-robot-data.
-
-    Raises:
-        InputError: they are not installed.
-    """
+    """The files of a robot of example-robot-data; InputError where they are not installed."""
     urdf, srdf, feet, sole = _NAMED[name]
     try:
         listed = {str(path): path.locate() for path in files("example-robot-data") or ()}
@@ -102,11 +98,7 @@ def robot_named(name: str) -> RobotFiles:
 
 
 def read_xml(path: Path) -> ET.Element:
-    """The root of a file.
-
-    Raises:
-        InputError: it is not there, or no XML.
-    """
+    """The root of a file; InputError where it is not there, or no XML."""
     try:
         return ET.parse(path).getroot()
     except (OSError, ET.ParseError) as error:

@@ -89,10 +89,8 @@ class References(NamedTuple):
 def references(machine: Machine, gait: PlannedGait, slope: float, obstacle: float) -> References:
     """What the drives of a machine are told, over and over; `obstacle` in m is what feet have to clear besides.
 
-    The feet are below the mass centre along the vertical, on ground that rises ahead by `slope` (rad).
-
-    Raises:
-        InputError: the gait is that of another number of feet, or the legs do not reach so far.
+    The feet are below the mass centre along the vertical, on ground that rises ahead by `slope` (rad). InputError where
+    the gait is that of another number of feet, or the legs do not reach so far.
     """
     offsets = gait.offsets
     if len(offsets) != len(machine.feet):

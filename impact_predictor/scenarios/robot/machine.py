@@ -48,9 +48,7 @@ class Machine:
 
     `joints` are the names of those that are driven, `feet` the links of the feet; `base` is the name of the URDF's root
     link, `mass` in kg; `height` in m of its origin over the soles in its `posture` (joint positions in rad or m).
-
-    Raises:
-        InputError: the files are not those of a robot with these feet.
+    InputError where the files are not those of a robot with these feet.
     """
 
     def __init__(self, robot: RobotFiles, ground: SimulatedGround, physics: Physics) -> None:

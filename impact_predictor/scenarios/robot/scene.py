@@ -60,10 +60,6 @@ def scene_of(walk: Walk, *, by_joints: bool, on_terrain: bool) -> str:
 
 
 def check_replaceable(path: Path) -> None:
-    """Whether a scene may take a place.
-
-    Raises:
-        InputError: there is a file that is no such scene.
-    """
+    """Whether a scene may take a place; InputError where there is a file that is no such scene."""
     if path.exists() and not (path.is_file() and path.read_bytes().startswith(HEAD.encode())):
         raise InputError(f"{path} is no scene of a simulated robot, so it stays as it is; give --params-out")
