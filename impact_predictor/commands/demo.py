@@ -122,8 +122,9 @@ def play(bag: Path, scene: Path, tosses: int, output: Path) -> None:
 
     seconds = sum(pause for pause, _ in timed(read_messages(bag, topics(bag)), tosses))
     environment = ros_environment()
+    # What is recorded is read as strings.
     arguments = {
-        "node": ("--ros-args", "--params-file", str(scene)),
+        "node": ("--ros-args", "--params-file", str(scene), "-p", "messages:=strings"),
         "player": (str(bag), "--runs", str(tosses), "--record", str(output), "--ros-args", *REMAPPING),
     }
     if not sys.stderr.isatty():
@@ -157,20 +158,18 @@ def read_recording(path: Path) -> list[TouchdownRow]:
     """The touchdowns that the node has settled, with the cost that it reported next, as in its diagnostics; InputError
     where nothing can be read there.
     """
-    from ..bags.read import read_messages, topics
+    from ..bags.read import read_messages
     from ..report.touchdowns import row_of_message
     from ..ros.messages import DIAGNOSTIC_ARRAY, decode_diagnostic_array
-    from ..ros.messages.reading import decode_scores
     from ..ros.player import NODE
 
     score = f"{NODE}/score"
-    types = topics(path)
-    wanted = {topic: types.get(topic, DIAGNOSTIC_ARRAY) for topic in (score, "/diagnostics")}
+    wanted = dict.fromkeys((score, "/diagnostics"), DIAGNOSTIC_ARRAY)
     rows: list[TouchdownRow] = []
     without_cost = 0
     for topic, _, data in read_messages(path, wanted):
         if topic == score:
-            rows += [row_of_message("", values) for _, values in decode_scores(wanted[score], data)]
+            rows += [row_of_message("", one.values) for one in decode_diagnostic_array(data)]
             continue
         (message,) = decode_diagnostic_array(data)
         if "cost_us.update.median" in message.values:

@@ -55,11 +55,7 @@ _ORDERS: Final = {b"\x00\x01": LITTLE_ENDIAN, b"\x00\x00": BIG_ENDIAN}
 
 
 def byte_order(data: bytes) -> ByteOrder:
-    """The byte order that the first bytes of a message name.
-
-    Raises:
-        MalformedMessage: the message is not plain CDR.
-    """
+    """The byte order that the first bytes of a message name; MalformedMessage where the message is not plain CDR."""
     order = _ORDERS.get(data[:2])
     if order is None or len(data) < HEADER_SIZE:
         raise MalformedMessage("the message does not begin with a CDR header")
@@ -77,11 +73,9 @@ def align8(offset: int) -> int:
 
 
 def read_string(data: bytes, offset: int, order: ByteOrder) -> tuple[str, int]:
-    """The string at an offset, which is a multiple of four, and the offset behind it.
-
-    Raises:
-        MalformedMessage: the string does not end with NUL inside the message.
-        struct.error, UnicodeDecodeError: its length is cut off, or it is not UTF-8.
+    """The string at an offset, which is a multiple of four, and the offset behind it; MalformedMessage where the string
+    does not end with NUL inside the message; struct.error or UnicodeDecodeError where its length is cut off, or it is
+    not UTF-8.
     """
     (size,) = order.length.unpack_from(data, offset)
     start = offset + 4
@@ -95,10 +89,8 @@ def read_string(data: bytes, offset: int, order: ByteOrder) -> tuple[str, int]:
 
 
 def read_header(data: bytes) -> tuple[ByteOrder, int, str, int]:
-    """What begins a message with a std_msgs/Header: its byte order, stamp in ns and frame, and the offset behind it.
-
-    Raises:
-        MalformedMessage, struct.error, UnicodeDecodeError: it does not begin so.
+    """What begins a message with a std_msgs/Header: its byte order, stamp in ns and frame, and the offset behind it;
+    MalformedMessage, struct.error or UnicodeDecodeError where it does not begin so.
     """
     order = byte_order(data)
     seconds, nanoseconds = order.stamp.unpack_from(data, HEADER_SIZE)
@@ -119,10 +111,8 @@ def read_strings(data: bytes, offset: int, order: ByteOrder) -> tuple[tuple[str,
 
 
 def read_doubles(data: bytes, offset: int, order: ByteOrder, each: int = 1) -> tuple[tuple[float, ...], int]:
-    """The sequence of doubles behind an offset, or of structures of `each` so many, and the offset behind it.
-
-    Raises:
-        struct.error: it does not end inside the message.
+    """The sequence of doubles behind an offset, or of structures of `each` so many, and the offset behind it;
+    struct.error where it does not end inside the message.
     """
     start = align4(offset)
     (count,) = order.length.unpack_from(data, start)
@@ -146,10 +136,8 @@ def _decoded(type_name: str, decode: Callable[[bytes], Decoded], data: bytes) ->
 
 
 def check_end(data: bytes, end: int, sequences: int = 0) -> None:
-    """Compare the end of the last field with the length of a message that has so many sequences of doubles.
-
-    Raises:
-        MalformedMessage: something is missing or left over.
+    """Compare the end of the last field with the length of a message that has so many sequences of doubles;
+    MalformedMessage where something is missing or left over.
     """
     if not end <= len(data) <= end + LARGEST_TRAILER + sequences * TRAILER_OF_DOUBLES:
         raise MalformedMessage(f"the message has {len(data)} bytes in the place of {end}")
@@ -248,10 +236,8 @@ class Diagnostic(NamedTuple):
 
 @decoder("diagnostic_msgs/msg/DiagnosticArray")
 def decode_diagnostic_array(data: bytes) -> list[Diagnostic]:
-    """The statuses in the bytes of a diagnostic_msgs/DiagnosticArray, of either byte order.
-
-    Raises:
-        MalformedMessage: the bytes are no such message.
+    """The statuses in the bytes of a diagnostic_msgs/DiagnosticArray, of either byte order; MalformedMessage where the
+    bytes are no such message.
     """
     order, _, _, end = read_header(data)
     length = order.length.unpack_from

@@ -11,6 +11,7 @@ from mcap.reader import make_reader
 from recordings import first_messages, write_bag, write_plan
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 from test_replay_deck import CARGO, TYPES, recorded
+from typed_scores import decode_scores
 
 from impact_predictor.bags.read import read_messages, topics
 from impact_predictor.bags.replay import replay
@@ -21,7 +22,6 @@ from impact_predictor.prediction.types import Leftover, Status
 from impact_predictor.report.touchdowns import row_of_message
 from impact_predictor.resources import find
 from impact_predictor.ros.messages import Diagnostic, decode_diagnostic_array
-from impact_predictor.ros.messages.reading import decode_scores
 
 NODE = "/impact_predictor"
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import partial
 from math import nan
-from typing import TYPE_CHECKING, Final, NamedTuple
+from operator import itemgetter
+from typing import TYPE_CHECKING, Final
 
 from ...prediction.deck.forecast import LEADS, ForecastStatus
 from ...prediction.types import Status
@@ -103,16 +104,9 @@ UNIT_STATE: Final = Message(
 )
 
 
-class DeckReports(NamedTuple):
-    """What is said of a support at a stamp in ns: a report on itself, if it moves, and those on its units."""
-
-    stamp: int
-    report: Report | None
-    units: Sequence[Report]
-
-
-def _header(deck: DeckReports) -> tuple[int, str]:
-    return deck.stamp, "" if deck.report is None else deck.report.body
+def _header(told: tuple[Sequence[Report], Report | None]) -> tuple[int, str]:
+    reports, deck = told
+    return max(report.stamp for report in reports), "" if deck is None else deck.body
 
 
 DECK_STATE: Final = Message(
@@ -150,12 +144,11 @@ DECK_STATE: Final = Message(
             _ahead("error.pitch.forecast", "rad", "the same of the pitch"),
         ),
     ),
-    MessageSection("", 0, {"units": field("units", UNIT_STATE.elements, "", "under watch")}),
+    MessageSection("", 0, {"units": field("units", UNIT_STATE.elements, "", "under watch", itemgetter(0))}),
     constants={"FORECAST": ForecastStatus},
 )
 
 
 def encode_deck_state(reports: Sequence[Report], deck: Report | None) -> bytes:
     """An impact_predictor_msgs/DeckState of reports that are due, one of them on the support if it moves."""
-    state = DeckReports(max(report.stamp for report in reports), deck, reports)
-    return DECK_STATE.encode(state, deck)
+    return DECK_STATE.encode((reports, deck), deck)

@@ -142,12 +142,12 @@ class Variable:
         if self._elements is None:
             self._write(data, value or "")
             return
-        _write_length(data, len(value or ()))
+        write_length(data, len(value or ()))
         for one in value or ():
             self._elements.add_to(data, (one,))
 
 
-def _write_length(data: bytearray, count: int) -> None:
+def write_length(data: bytearray, count: int) -> None:
     data += bytes(-len(data) & 3) + LITTLE_ENDIAN.length.pack(count)
 
 
@@ -166,19 +166,19 @@ def _write_header(data: bytearray, header: tuple[int, str]) -> None:
     _write_text(data, header[1])
 
 
-def _write_texts(data: bytearray, texts: Sequence[str]) -> None:
-    _write_length(data, len(texts))
+def write_texts(data: bytearray, texts: Sequence[str]) -> None:
+    write_length(data, len(texts))
     for one in texts:
         _write_text(data, one)
 
 
 def _write_indices(data: bytearray, indices: Sequence[int]) -> None:
-    _write_length(data, len(indices))
+    write_length(data, len(indices))
     data += b"".join([LITTLE_ENDIAN.length.pack(one) for one in indices])
 
 
-def _write_numbers(data: bytearray, numbers: Sequence[float]) -> None:
-    _write_length(data, len(numbers))
+def write_numbers(data: bytearray, numbers: Sequence[float]) -> None:
+    write_length(data, len(numbers))
     if numbers:
         data += bytes(-(len(data) - HEADER_SIZE) % _LARGEST)
         data += Struct(f"<{len(numbers)}d").pack(*numbers)
@@ -187,7 +187,7 @@ def _write_numbers(data: bytearray, numbers: Sequence[float]) -> None:
 _WRITERS: Final[dict[str, Callable[[bytearray, Any], None]]] = {
     TEXT.type: _write_text,
     HEADER.type: _write_header,
-    TEXTS.type: _write_texts,
+    TEXTS.type: write_texts,
     INDICES.type: _write_indices,
-    NUMBERS.type: _write_numbers,
+    NUMBERS.type: write_numbers,
 }

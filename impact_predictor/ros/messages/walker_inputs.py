@@ -3,19 +3,19 @@
 from __future__ import annotations
 
 import struct
-from collections.abc import Sequence
 
 from ...prediction.types import FeetStates, Joints, Schedule, Terrain, Wrench
 from ..cdr import LITTLE_ENDIAN, LITTLE_ENDIAN_HEADER, align8, stamp, string
+from .message import write_length, write_numbers, write_texts
 
 
 def encode_feet(feet: FeetStates) -> bytes:
     """A sensor_msgs/MultiDOFJointState of points that do not turn."""
     data = _headed(feet.stamp, feet.frame_id)
-    _add_strings(data, feet.names)
+    write_texts(data, feet.names)
     rests = (0.0, 0.0, 0.0, 1.0), (0.0,) * 3, (0.0,) * 3
     for vectors, rest in zip((feet.positions, feet.velocities, feet.forces), rests, strict=True):
-        data += LITTLE_ENDIAN.length.pack(len(vectors))
+        write_length(data, len(vectors))
         if vectors:
             data += bytes(align8(len(data)) - len(data))
             data += b"".join([struct.pack(f"<{3 + len(rest)}d", *vector, *rest) for vector in vectors])
@@ -25,9 +25,9 @@ def encode_feet(feet: FeetStates) -> bytes:
 def encode_joints(joints: Joints) -> bytes:
     """A sensor_msgs/JointState."""
     data = _headed(joints.stamp, "")
-    _add_strings(data, joints.names)
+    write_texts(data, joints.names)
     for numbers in (joints.positions, joints.velocities, joints.efforts):
-        _add_doubles(data, numbers)
+        write_numbers(data, numbers)
     return bytes(data)
 
 
@@ -41,11 +41,11 @@ def encode_wrench(wrench: Wrench) -> bytes:
 def encode_schedule(schedule: Schedule) -> bytes:
     """A trajectory_msgs/JointTrajectory whose positions are 1 where a foot stands and 0 where it swings."""
     data = _headed(schedule.stamp, "")
-    _add_strings(data, schedule.feet)
-    data += LITTLE_ENDIAN.length.pack(len(schedule.times))
+    write_texts(data, schedule.feet)
+    write_length(data, len(schedule.times))
     for time, stands in zip(schedule.times, schedule.stands, strict=True):
         for numbers in ([1.0 if one else 0.0 for one in stands], (), (), ()):
-            _add_doubles(data, numbers)
+            write_numbers(data, numbers)
         data += stamp(time - schedule.stamp)
     return bytes(data)
 
@@ -62,16 +62,3 @@ def encode_terrain(terrain: Terrain) -> bytes:
 
 def _headed(nanoseconds: int, frame_id: str) -> bytearray:
     return bytearray(LITTLE_ENDIAN_HEADER + stamp(nanoseconds) + string(frame_id))
-
-
-def _add_strings(data: bytearray, texts: Sequence[str]) -> None:
-    data += LITTLE_ENDIAN.length.pack(len(texts))
-    for text in texts:
-        data += string(text)
-
-
-def _add_doubles(data: bytearray, numbers: Sequence[float]) -> None:
-    data += LITTLE_ENDIAN.length.pack(len(numbers))
-    if numbers:
-        data += bytes(align8(len(data)) - len(data))
-        data += struct.pack(f"<{len(numbers)}d", *numbers)

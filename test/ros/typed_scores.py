@@ -1,4 +1,4 @@
-"""A typed score as the texts of a diagnostic array, so that programs read both forms alike."""
+"""A typed score as the texts of a diagnostic array, so that tests read both forms alike."""
 
 from __future__ import annotations
 
@@ -9,15 +9,15 @@ from functools import lru_cache
 from math import isnan
 from typing import TYPE_CHECKING, Any, Final
 
-from ...mechanics.types import Flag, Mode
-from ...prediction.types import Leftover
-from ...stamps import NANOSECONDS
-from ..cdr import decode_diagnostic_array
-from .definitions import register
-from .fields import LANDING, SCORE
-from .kinds import ANSWER, BOUND, BOUNDS, LIFT, STAMP, Field, text
-from .outputs import DIAGNOSTIC_ARRAY
-from .typed import SCORE_MESSAGE
+from impact_predictor.mechanics.types import Flag, Mode
+from impact_predictor.prediction.types import Leftover
+from impact_predictor.ros.cdr import decode_diagnostic_array
+from impact_predictor.ros.messages.definitions import register
+from impact_predictor.ros.messages.fields import LANDING, SCORE
+from impact_predictor.ros.messages.kinds import ANSWER, BOUND, BOUNDS, LIFT, STAMP, Field, text
+from impact_predictor.ros.messages.outputs import DIAGNOSTIC_ARRAY
+from impact_predictor.ros.messages.typed import SCORE_MESSAGE
+from impact_predictor.stamps import NANOSECONDS
 
 if TYPE_CHECKING:
     from rosbags.typesys.store import Typestore
