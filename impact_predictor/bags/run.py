@@ -17,15 +17,7 @@ from ..prediction.recorded import Announced
 from ..prediction.scene import CONTACT_GEOMETRY, IMU, JOINTS, ODOM, SCHEDULE, TRANSFORMS, WRENCH, Input, Scene
 from ..prediction.types import FeetStates, Geometry, Imu, Joints, Sample, Schedule, Status, Wrench
 from ..ros.messages import DIAGNOSTIC_ARRAY, INPUT_TYPES, MARKER_ARRAY, MalformedMessage, encode_reports, is_typed
-from ..scenarios.truth import (
-    LANDING_TOPIC,
-    ONSET_TOPIC,
-    TRUTH_TOPIC,
-    TrueImpact,
-    TrueLanding,
-    TrueOnset,
-    decode_truths,
-)
+from ..scenarios.truth import LANDING_TOPIC, ONSET_TOPIC, TRUTH_TOPIC, TrueImpact, TrueLanding, TrueOnset, decode_truths
 from .body import NODE as NODE
 from .body import BodyRecord, Write
 from .body import Settled as Settled

@@ -51,12 +51,7 @@ def bench() -> None:
     )
 )
 @click.option(
-    "--count",
-    type=float,
-    callback=whole_number,
-    default=1e6,
-    metavar="N",
-    help="How many problems. [default: 1e6]",
+    "--count", type=float, callback=whole_number, default=1e6, metavar="N", help="How many problems. [default: 1e6]"
 )
 @seed_option("Which random problems.")
 @choice("--law", "Impact law to be checked.", *LAWS, "both", default="both")

@@ -38,10 +38,7 @@ PROCESSING: Final = 0.5
 
 @click.command(
     short_help="Tosses live on ROS topics, a crate on a deck, a robot: what is predicted.",
-    epilog=examples(
-        "impact-predictor demo",
-        "impact-predictor demo --tosses 5 -o /tmp/demo",
-    ),
+    epilog=examples("impact-predictor demo", "impact-predictor demo --tosses 5 -o /tmp/demo"),
 )
 @click.option(
     "-o",

@@ -12,10 +12,7 @@ from .options import examples, json_flag
 
 @click.command(
     short_help="Tell which features a scene has, which it leaves out, and why.",
-    epilog=examples(
-        "impact-predictor explain config/cube_tosses.yaml",
-        "impact-predictor explain scene.yaml --json",
-    ),
+    epilog=examples("impact-predictor explain config/cube_tosses.yaml", "impact-predictor explain scene.yaml --json"),
 )
 @click.argument("params", metavar="PARAMS.yaml")
 @json_flag()

@@ -73,9 +73,7 @@ def motion_options(angle: float) -> Callable[[F], F]:
 @click.group(
     short_help="Simulate bodies that rock, as a table, a picture or a bag.",
     no_args_is_help=False,
-    epilog=examples(
-        *(lines[0] for lines in (*EXAMPLES.values(), DECK_EXAMPLES, ROBOT_EXAMPLES)),
-    ),
+    epilog=examples(*(lines[0] for lines in (*EXAMPLES.values(), DECK_EXAMPLES, ROBOT_EXAMPLES))),
 )
 def simulate() -> None:
     """How a body moves from impact to impact: released at rest until it stays, down a slope, or on a moving deck.

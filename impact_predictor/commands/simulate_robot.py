@@ -53,11 +53,7 @@ EXAMPLES: Final = (
 @text("--urdf", "FILE", "URDF of another robot.")
 @text("--feet", "LINKS", "Links of its feet, left and right ones in turn, front ones first: LF,RF,LH,RH.")
 @text("--srdf", "FILE", "Its postures; its legs are bent as their limits allow unless given.")
-@number(
-    "--radius",
-    "Radius of its feet, m: balls about the links' origins (those of the URDF unless given).",
-    **FROM_0,
-)
+@number("--radius", "Radius of its feet, m: balls about the links' origins (those of the URDF unless given).", **FROM_0)
 @text("--sole", "X,X,Y", "Flat soles in its place, m: where heel and toe are along their links' x axes, and the width.")
 @click.option(
     "--gait", type=click.Choice(GAITS), help="Which feet swing together. [default: trot on four feet, step on two]"
@@ -76,9 +72,7 @@ EXAMPLES: Final = (
     **FROM_0,
 )
 @number(
-    "--armature",
-    "Inertia of each drive at its joint, kg m^2 (that of a robot of its size unless given).",
-    **FROM_0,
+    "--armature", "Inertia of each drive at its joint, kg m^2 (that of a robot of its size unless given).", **FROM_0
 )
 @number("--friction", "Coulomb friction coefficient of the feet.", 0.8, **FROM_0)
 @number("--contact-time", "Time constant with which a contact stops a foot, s: less is stiffer.", 0.002, **POSITIVE)

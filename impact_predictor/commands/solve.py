@@ -116,9 +116,7 @@ def side(name: str, help_text: str, x: float, y: float) -> Callable[[F], F]:
 
 
 @solve.command(
-    "body",
-    short_help="Any body with two contacts, or with one that strikes.",
-    epilog=examples(*EXAMPLES["body"]),
+    "body", short_help="Any body with two contacts, or with one that strikes.", epilog=examples(*EXAMPLES["body"])
 )
 @number("--mass", "Mass, kg.", required=True)
 @number("--inertia", "Inertia about the mass centre, kg m^2.", required=True)

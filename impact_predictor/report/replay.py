@@ -141,10 +141,7 @@ def _ms(seconds: float | None, decimals: int = 1, sign: str = "") -> str:
 def _velocity(which: int, row: TouchdownRow) -> str:
     """Speed of the mass centre, its part along the normal, or the angular speed: predicted and measured."""
     texts = []
-    for whole, planar in (
-        (row.predicted_twist_6d, row.predicted_twist),
-        (row.measured_twist_6d, row.measured_twist),
-    ):
+    for whole, planar in ((row.predicted_twist_6d, row.predicted_twist), (row.measured_twist_6d, row.measured_twist)):
         speeds = (hypot(*whole[:3]), whole[2], hypot(*whole[3:])) if whole else None
         if speeds is None and planar is not None:
             speeds = hypot(planar.vx, planar.vy), planar.vy, abs(planar.omega)

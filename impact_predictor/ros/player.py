@@ -22,16 +22,7 @@ from ..bags.read import BagMessage, read_messages, topics
 from ..bags.write import BagWriter
 from ..errors import InputError
 from ..stamps import NANOSECONDS
-from .messages import (
-    IMU,
-    JOINT_STATE,
-    JOINT_TRAJECTORY,
-    MULTI_DOF_JOINT_STATE,
-    ODOMETRY,
-    OUTPUTS,
-    POLYGON,
-    WRENCH,
-)
+from .messages import IMU, JOINT_STATE, JOINT_TRAJECTORY, MULTI_DOF_JOINT_STATE, ODOMETRY, OUTPUTS, POLYGON, WRENCH
 from .process import Stop, message_class, run, spin
 
 AWAITED: Final = (ODOMETRY, IMU, POLYGON)

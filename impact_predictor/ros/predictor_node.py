@@ -47,9 +47,7 @@ class PredictorNode(Node):
         """
         try:
             super().__init__(
-                "impact_predictor",
-                cli_args=overrides_of(args),
-                automatically_declare_parameters_from_overrides=True,
+                "impact_predictor", cli_args=overrides_of(args), automatically_declare_parameters_from_overrides=True
             )
             self._settings = NodeParameters(self, args)
             self.executor_kind = str(self._settings.values["executor"])

@@ -16,18 +16,7 @@ from ...wording import counted, words
 from ..modes import MODES, PALETTE
 from ..skill import pair_of
 from ..summary import WHY, without_bag
-from . import (
-    GREY,
-    Cell,
-    Chart,
-    Headline,
-    PageTable,
-    Section,
-    marks,
-    page,
-    part_words,
-    script_inside,
-)
+from . import GREY, Cell, Chart, Headline, PageTable, Section, marks, page, part_words, script_inside
 from .facts import FOUND, NOTHING, BagAnswer, ReplayFacts
 from .landings import landings
 from .skill import skill
@@ -96,11 +85,7 @@ def write_replay_page(path: str | os.PathLike[str], answers: Sequence[BagAnswer]
     write_text(path / "index.html", page_of_replay(answers, script, links))
 
 
-def page_of_replay(
-    answers: Sequence[BagAnswer],
-    script: str = "",
-    links: Mapping[int, str] | None = None,
-) -> str:
+def page_of_replay(answers: Sequence[BagAnswer], script: str = "", links: Mapping[int, str] | None = None) -> str:
     """The page as HTML; `script` is plotly's, `links` where the bags lead, by their places."""
     facts, each = ReplayFacts(answers), [ReplayFacts([answer]) for answer in answers]
     order = sorted(range(len(answers)), key=lambda place: each[place].badness(), reverse=True)

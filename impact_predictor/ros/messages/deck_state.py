@@ -132,11 +132,7 @@ DECK_STATE: Final = Message(
             _ahead("roll.deviation", "rad", "standard deviation of the roll"),
             _ahead("pitch", "rad", "mean of the pitch with the bow down"),
             _ahead("pitch.deviation", "rad", "standard deviation of the pitch"),
-            _ahead(
-                "skill",
-                "1",
-                "part of the better simple answer's mean square error of felt gravity that it spares",
-            ),
+            _ahead("skill", "1", "part of the better simple answer's mean square error of felt gravity that it spares"),
             _ahead("skill.roll", "1", "the same of the roll"),
             _ahead("skill.pitch", "1", "the same of the pitch"),
             _ahead("error.forecast", "m/s^2", "root mean square error of felt gravity"),

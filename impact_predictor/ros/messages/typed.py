@@ -9,20 +9,7 @@ from ...mechanics.types import ContactState, Flag, Mode
 from ...prediction.types import Bound, Covariance, Leftover, Prediction, Status
 from ...stamps import NANOSECONDS
 from .fields import FOOT, LANDING, MARGINS, PREDICTION, SCORE, TOUCHDOWN, UNCERTAINTY
-from .kinds import (
-    CHOICE,
-    HEADER,
-    INDEX,
-    NUMBER,
-    POINT,
-    POSE,
-    STAMP,
-    TEXT,
-    TRUTH,
-    TWIST_WITH_COVARIANCE,
-    VECTOR,
-    field,
-)
+from .kinds import CHOICE, HEADER, INDEX, NUMBER, POINT, POSE, STAMP, TEXT, TRUTH, TWIST_WITH_COVARIANCE, VECTOR, field
 from .message import Message, MessageSection, fields_of
 from .outputs import frame_of
 
@@ -118,11 +105,7 @@ PREDICTION_MESSAGE: Final = Message(
         | fields_of(PREDICTION, "status", "mode"),
     ),
     MessageSection(
-        "The touchdown",
-        0,
-        {
-            "touchdown": field("touchdown", STAMP, "", "when; the stamp of ~/post_impact", stamp_of),
-        },
+        "The touchdown", 0, {"touchdown": field("touchdown", STAMP, "", "when; the stamp of ~/post_impact", stamp_of)}
     ),
     MessageSection("", 1, fields_of(TOUCHDOWN, "lead_time")),
     MessageSection(
@@ -155,13 +138,7 @@ PREDICTION_MESSAGE: Final = Message(
     MessageSection(
         "The impact plane",
         1,
-        fields_of(
-            TOUCHDOWN,
-            "axis",
-            planar_before="before",
-            planar_after="after",
-            planar_impulse="impulse",
-        )
+        fields_of(TOUCHDOWN, "axis", planar_before="before", planar_after="after", planar_impulse="impulse")
         | fields_of(TOUCHDOWN, *_OF_PLANE),
     ),
     MessageSection(
@@ -180,11 +157,7 @@ PREDICTION_MESSAGE: Final = Message(
         3,
         {f"margin_{key.removeprefix('margin.')}": one for key, one in MARGINS.fields.items()},
     ),
-    MessageSection(
-        "A walking machine",
-        1,
-        fields_of(TOUCHDOWN, "bound", "trunk", drives_impulse="impulse.drives"),
-    ),
+    MessageSection("A walking machine", 1, fields_of(TOUCHDOWN, "bound", "trunk", drives_impulse="impulse.drives")),
     MessageSection(
         "Contacts; the law in the plane knows but the old and the new one, and leaves contacts empty",
         1,
