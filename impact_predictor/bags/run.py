@@ -14,8 +14,9 @@ from typing import TYPE_CHECKING, Any, Final
 from ..prediction.flaws import flaw_of
 from ..prediction.monitor import Monitor
 from ..prediction.recorded import Announced
-from ..prediction.scene import CONTACT_GEOMETRY, IMU, JOINTS, ODOM, SCHEDULE, TRANSFORMS, WRENCH, Input, Scene
-from ..prediction.types import FeetStates, Geometry, Imu, Joints, Sample, Schedule, Status, Wrench
+from ..prediction.scene import CONTACT_GEOMETRY, JOINTS, ODOM, SCHEDULE, WRENCH, Input, Scene
+from ..prediction.types import FeetStates, Geometry, Joints, Sample, Status
+from ..ros.inputs import route
 from ..ros.messages import DIAGNOSTIC_ARRAY, INPUT_TYPES, MARKER_ARRAY, MalformedMessage, encode_reports, is_typed
 from ..scenarios.truth import LANDING_TOPIC, ONSET_TOPIC, TRUTH_TOPIC, TrueImpact, TrueLanding, TrueOnset, decode_truths
 from .body import NODE as NODE
@@ -147,14 +148,9 @@ class Run:
 
     def _take_of(self, one: Input) -> Take:
         """What takes a message on an input."""
-        if one.kind in TRANSFORMS:
-            return lambda transforms, _: self.monitor.update_frames(transforms, one.kind == TRANSFORMS[0])
-        if one.body is None:
-            return self._set_support
-        if one.kind == IMU:
-            return partial(self._set_tilt, one.body)
-        takes: dict[str, Callable[..., Status]] = {ODOM: self._answer, CONTACT_GEOMETRY: self._set_geometry}
-        return partial(takes.get(one.kind, self._tell), self.bodies[one.body])
+        if one.kind == ODOM and one.body is not None:
+            return partial(self._answer, self.bodies[one.body])
+        return partial(self._tell, one, route(self.monitor, one))
 
     def _take(self, one: Input, decode: Callable[[bytes], Any], take: Take, log_time: int, data: bytes) -> None:
         message, status = None, Status.MALFORMED
@@ -214,37 +210,18 @@ class Run:
                 self._draw(sample.stamp, log_time)
         return prediction.status
 
-    def _tell(self, record: BodyRecord, message: FeetStates | Joints | Wrench | Schedule, _: int) -> Status:
-        status = self.monitor.tell(record.body, message)
-        geometry = self.monitor.predictors[record.body].contacts.geometry
-        if isinstance(message, FeetStates | Joints) and geometry is not None and status in _FITTING:
-            record.take_geometry(geometry)
-        return status
-
-    def _set_geometry(self, record: BodyRecord, geometry: Geometry, log_time: int) -> Status:
-        status = self.monitor.tell(record.body, geometry)
-        if status in _FITTING:
-            record.take_geometry(geometry)
+    def _tell(self, one: Input, update: Callable[[Any], Status], message: Any, log_time: int) -> Status:
+        """Hand on what is no state of a body; contact points that it tells are noted, and what moves by it is drawn."""
+        status, record = update(message), self.bodies.get(one.body or "")
+        if record is not None and status in _FITTING and isinstance(message, Geometry | FeetStates | Joints):
+            told = message if isinstance(message, Geometry) else self.monitor.predictors[record.body].contacts.geometry
+            if told is not None:
+                record.take_geometry(told)
         if status is Status.ACCEPTED and self._drawing is not None:
-            self._drawing.set_geometry(record.body, self.monitor.predictors[record.body].brought(geometry))
-            if record.gait is not None:
-                self._draw(geometry.stamp, log_time)
-        return status
-
-    def _set_support(self, message: Sample | Imu, log_time: int) -> Status:
-        monitor = self.monitor
-        status = monitor.update_support_imu(message) if isinstance(message, Imu) else monitor.update_support(message)
-        if status is Status.ACCEPTED and self._drawing is not None and monitor.deck is not None:
-            if monitor.deck.last is not None:
-                self._drawing.take_support(monitor.deck.last)
+            # Over its points a machine moves.
+            moves = one.kind == CONTACT_GEOMETRY and record is not None and record.gait is not None
+            if self._drawing.hear(self.monitor, one, message) or moves:
                 self._draw(message.stamp, log_time)
-        return status
-
-    def _set_tilt(self, body: str, imu: Imu, log_time: int) -> Status:
-        status = self.monitor.update_imu(body, imu)
-        if status is Status.ACCEPTED and self._drawing is not None:
-            self._drawing.take_tilt(body, imu.stamp, self.monitor.tilts[body])
-            self._draw(imu.stamp, log_time)
         return status
 
     def _report(self, log_time: int) -> None:

@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
-from typing import Final, NamedTuple
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import partial
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from ..prediction.checks import REMEDIES
-from ..prediction.scene import STATES
+from ..prediction.scene import IMU, STATES, TRANSFORMS, Input
 from ..prediction.types import Status
 from ..wording import counted, listed
+
+if TYPE_CHECKING:
+    from ..prediction.monitor import Monitor
 
 STALE_AFTER: Final = 1.0
 """Seconds without a sample after which the input counts as stale."""
@@ -21,6 +25,15 @@ error."""
 _SUPPORT: Final = "support/"
 _OF_SUPPORT: Final = (Status.NO_SUPPORT, Status.SUPPORT_STALE, Status.SUPPORT_JUMPED, Status.GRAVITY_WRONG)
 _OF_CONTACTS: Final = (Status.NO_GEOMETRY, Status.GEOMETRY_STALE)
+
+
+def route(monitor: Monitor, one: Input) -> Callable[[Any], Status]:
+    """What of the monitor takes the messages on an input that is no state of a body."""
+    if one.kind in TRANSFORMS:
+        return partial(monitor.update_frames, is_fixed=one.kind == TRANSFORMS[0])
+    if one.body is None:
+        return monitor.update_support_imu if one.kind == IMU else monitor.update_support
+    return partial(monitor.update_imu if one.kind == IMU else monitor.tell, one.body)
 
 
 class Refusal(NamedTuple):

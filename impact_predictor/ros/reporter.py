@@ -11,7 +11,7 @@ from rclpy.node import Node
 
 from ..prediction.flaws import flaw_of
 from ..prediction.monitor import Monitor
-from ..prediction.scene import CONTACT_GEOMETRY, IMU, TRANSFORMS, Input
+from ..prediction.scene import CONTACT_GEOMETRY, Input
 from ..prediction.types import Geometry, Prediction, Status
 from ..stamps import NANOSECONDS
 from .cdr import diagnostic_array
@@ -37,19 +37,10 @@ class MarkerTopic:
 
     def take(self, one: Input, message: Any) -> None:
         """Take an accepted message on an input: contact points also for later."""
-        drawing, monitor, body = self.drawing, self._monitor, one.body or ""
         if one.kind == CONTACT_GEOMETRY:
-            message = self._geometries[body] = monitor.predictors[body].brought(message)
-            if drawing is not None:
-                drawing.set_geometry(body, message)
-        elif drawing is None or one.kind in TRANSFORMS:
-            return
-        elif one.body is None:
-            if monitor.deck is not None and monitor.deck.last is not None:
-                drawing.take_support(monitor.deck.last)
-                self.show(message.stamp)
-        elif one.kind == IMU:
-            drawing.take_tilt(body, message.stamp, monitor.tilts[body])
+            body = one.body or ""
+            self._geometries[body] = self._monitor.predictors[body].brought(message)
+        if self.drawing is not None and self.drawing.hear(self._monitor, one, message):
             self.show(message.stamp)
 
     def begin_anew(self) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from functools import partial
 from time import perf_counter
 from typing import Any, Final
@@ -11,9 +11,10 @@ from rclpy.duration import Duration
 from rclpy.node import Node
 
 from ..prediction.monitor import Monitor
-from ..prediction.scene import CONTACT_GEOMETRY, IMU, SCHEDULE, TERRAIN, TRANSFORMS, Input
+from ..prediction.scene import CONTACT_GEOMETRY, SCHEDULE, TERRAIN, TRANSFORMS, Input
 from ..prediction.types import Prediction, Score, Status
 from .endpoints import LONGEST, Backlog, LatchedTopic, Outlet, publisher, subscription
+from .inputs import route
 from .messages import INPUT_TYPES, MalformedMessage, Output, decode_odometry, outputs_of
 from .reporter import Reporter
 
@@ -31,7 +32,7 @@ class InputTopic:
         self.body = one.body
         self.subscription: Any = None
         self._reporter, self._input = reporter, one
-        self._update = _route(monitor, one)
+        self._update = route(monitor, one)
         type_name, self._decode = INPUT_TYPES[one.kind]
         # Feet move, and what was published of them before is of no use.
         stays_true = one.kind == CONTACT_GEOMETRY and monitor.scenes[one.body or ""].walking is None
@@ -59,15 +60,6 @@ class InputTopic:
             self._reporter.took(self._input, message)
         else:
             self._reporter.refuse(self._input.name, status, self.body, message)
-
-
-def _route(monitor: Monitor, one: Input) -> Callable[[Any], Status]:
-    """What of the monitor takes the messages on an input."""
-    if one.kind in TRANSFORMS:
-        return partial(monitor.update_frames, is_fixed=one.kind == TRANSFORMS[0])
-    if one.body is None:
-        return monitor.update_support_imu if one.kind == IMU else monitor.update_support
-    return partial(monitor.update_imu if one.kind == IMU else monitor.tell, one.body)
 
 
 class BodyTopics:

@@ -9,15 +9,16 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from functools import lru_cache, partial
 from math import acos, degrees, floor, hypot, log10
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
-from ...prediction.scene import Scene
+from ...prediction.scene import CONTACT_GEOMETRY, IMU, STATES, Input, Scene
 from ...prediction.types import Geometry, Moment, Prediction, Quaternion, Status, Vector3
 from ...prediction.vectors import Axes, add, axes_of, combine, dot, turn_to
 from .body import PAUSE, BodyMarkers
 from .message import DELETE, DELETE_ALL, NO_LOOK, NOWHERE, Marker, encode_markers
 
 if TYPE_CHECKING:
+    from ...prediction.monitor import Monitor
     from ...prediction.watch.watch import Report
 
 PERIOD: Final = 100_000_000
@@ -51,6 +52,19 @@ class MarkerScene:
         """Take the answer to a sample of a body; a refused sample changes nothing."""
         if prediction.status is Status.ACCEPTED and self._bodies[body].take(prediction) and self._scene.deck is None:
             self._frame = prediction.sample.frame_id
+
+    def hear(self, monitor: Monitor, one: Input, message: Any) -> bool:
+        """Take what the monitor has made of an accepted message that is no state of a body; whether something moved."""
+        body, deck = one.body or "", monitor.deck
+        if one.kind == CONTACT_GEOMETRY:
+            self.set_geometry(body, monitor.predictors[body].brought(message))
+        elif one.kind in STATES and one.body is None and deck is not None and deck.last is not None:
+            self.take_support(deck.last)
+            return True
+        elif one.kind == IMU and one.body is not None:
+            self.take_tilt(body, message.stamp, monitor.tilts[body])
+            return True
+        return False
 
     def take_tilt(self, body: str, stamp: int, orientation: Quaternion) -> None:
         """Take the orientation, relative to the support, of a body whose place nobody measures."""
