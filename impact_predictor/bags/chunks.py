@@ -171,7 +171,6 @@ class ChunkedFile(ABC):
         ]
 
     def close(self) -> None:
-        """Close the file."""
         self._file.close()
 
     def messages(self, wanted: Collection[int]) -> Iterator[RawMessage]:

@@ -142,7 +142,6 @@ def _records(chunk: Chunk, data: bytes) -> Iterator[tuple[Fields, bytes]]:
 
 
 def _fields(header: bytes) -> Fields:
-    """The fields of a header."""
     fields = {}
     place = 0
     while place < len(header):

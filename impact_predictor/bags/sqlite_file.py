@@ -56,7 +56,6 @@ class SqliteFile:
             self.flaw = self.flaw or Flaw(0, f"{_DAMAGED}: {error}")
 
     def close(self) -> None:
-        """Close the file."""
         self._database.close()
 
     def messages(self, wanted: Collection[int]) -> Iterator[RawMessage]:

@@ -67,7 +67,6 @@ class RecordingMonitor(Monitor):
 
     @property
     def motions(self) -> list[RecordedMotion]:
-        """The motions in the order of time."""
         return [
             RecordedMotion(
                 stamps=np.array([sample.stamp for sample in samples]),

@@ -126,6 +126,5 @@ class Solver:
 
 
 def lengths(misses: Reals) -> Reals:
-    """The lengths of rows."""
     found: Reals = np.linalg.norm(misses, axis=1)
     return found

@@ -49,11 +49,9 @@ class Maps(click.Group):
     """A command for each body, made when it is asked for: its options are the parameters of the body."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
-        """The names of the bodies."""
         return list(WHAT)
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
-        """The command of a body."""
         return command_of(cmd_name) if cmd_name in WHAT else None
 
 

@@ -124,7 +124,6 @@ class ReplayReport:
 
     @property
     def status(self) -> int:
-        """The exit status."""
         return next((one for one in (FAILED, DAMAGED) if one in self._statuses), 0)
 
     def _say_file(self, what: str, path: str | Path) -> None:

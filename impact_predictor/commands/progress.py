@@ -32,7 +32,6 @@ class ProgressBar:
         self._began = perf_counter()
 
     def __call__(self, done: int) -> None:
-        """Show how much is done."""
         if self._note:
             click.echo(f"note: {self._note}", err=True)
             self._note = ""

@@ -152,7 +152,6 @@ def simulate_robot(
 def robot_of(
     name: str | None, urdf: str | None, feet: str | None, srdf: str | None, radius: float | None, sole: str | None
 ) -> RobotFiles:
-    """The robot that the options name."""
     from ..scenarios.robot.description import RobotFiles, Sole, robot_named
 
     if urdf is None:
@@ -184,7 +183,6 @@ def flat(sole: str) -> Sole:
 
 
 def ground_of(seed: int, slope: float, blocks: float, stairs: float) -> SimulatedGround:
-    """The ground that the options describe."""
     from ..scenarios.robot import ground
 
     if sum(value != 0.0 for value in (slope, blocks, stairs)) > 1:

@@ -70,7 +70,6 @@ class Products(NamedTuple):
             named(self.plot, *PICTURE)
 
     def record(self, actors: Sequence[Actor]) -> None:
-        """Write the bag."""
         from ..scenarios.record import write_record
 
         assert self.output is not None

@@ -146,7 +146,6 @@ def _paired(was: Sequence[TouchdownRow], now: Sequence[TouchdownRow]) -> dict[in
 
 
 def _changes(was: TouchdownRow, now: TouchdownRow) -> Iterator[TouchdownChange]:
-    """What has changed of one touchdown."""
     changed = partial(TouchdownChange, now)
     if _points(was) != _points(now):
         yield changed(ChangeKind.CONTACTS, _points(was), _points(now))

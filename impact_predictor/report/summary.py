@@ -159,7 +159,6 @@ class Tally:
         self.add(rows)
 
     def add(self, rows: Iterable[TouchdownRow]) -> None:
-        """Count rows."""
         for row in rows:
             if row.foot:
                 self._landings += 1

@@ -236,7 +236,6 @@ def _deck(deck: DeckMotion, watched: MovingDeck, duration: float, sensors: Senso
 def _unit(
     one: Followed, deck: DeckMotion, namespace: str, duration: float, sensors: Sensors, number: int
 ) -> Iterator[RecordedMessage]:
-    """A unit's messages, and its truth."""
     unit, rng = one.unit, np.random.default_rng((sensors.seed, number))
     name, source = unit.name, unit.scene.source
     # Nobody measures where a deck is of which only an inertial sensor tells: its units are seen from it.

@@ -118,7 +118,6 @@ class Rolling:
 
     @property
     def impacts(self) -> tuple[WheelStrike, ...]:
-        """The impacts in their order."""
         count = self.wheel.spokes
         return tuple(
             WheelStrike(

@@ -77,7 +77,6 @@ SCENES: Final[dict[AccuracyScene, Callable[[Random], Struck]]] = {
 
 
 def reference_of(strike: Struck) -> Aftermath:
-    """What is held to be right."""
     if strike.known is not None:
         return strike.known
     return law(strike._replace(body=with_long_floats(strike.body), twist=with_long_floats(strike.twist)), "path")

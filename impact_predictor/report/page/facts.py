@@ -41,7 +41,6 @@ class ReplayFacts:
     """
 
     def __init__(self, answers: Sequence[BagAnswer]) -> None:
-        """Collect them."""
         self.answers = answers
         self.names = [str(name) for name in told_apart([Path(answer["bag"]) for answer in answers])]
         self.rows, self.true, self.recorded = list[TouchdownRow](), list[BagAnswer](), dict[str, Announced]()

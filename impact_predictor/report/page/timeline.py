@@ -53,7 +53,6 @@ class Lane(NamedTuple):
 
 
 def timeline(title: str, answer: BagAnswer, anchor: str) -> Chart:
-    """The timeline of a bag."""
     lanes = [lane for body in answer.get("gaits", {}) for lane in _feet(answer, body)]
     both = [*answer["touchdowns"], *answer.get("true_touchdowns", ())]
     for body in dict.fromkeys(one["body"] for one in both if "foot" not in one):

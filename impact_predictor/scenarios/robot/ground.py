@@ -45,7 +45,6 @@ class SimulatedGround(NamedTuple):
 
     @property
     def normal(self) -> Vector3:
-        """Out of the ground."""
         return 0.0 - sin(self.slope), 0.0, cos(self.slope)
 
     def heights(self, x: NDArray[np.float64], y: NDArray[np.float64]) -> NDArray[np.float64]:
