@@ -158,9 +158,7 @@ def seen_events(log: WatchLog) -> dict[str, dict[int, str]]:
     found = {}
     for place, name in enumerate(log.names):
         _, slide, tip, _ = log.units[:, place].T
-        stamps, tips = (
-            log.stamps[np.fmax(slide, tip) >= 1.0].tolist(),
-            dict(zip(log.stamps.tolist(), tip >= slide, strict=True)),
-        )
+        stamps = log.stamps[np.fmax(slide, tip) >= 1.0].tolist()
+        tips = dict(zip(log.stamps.tolist(), tip >= slide, strict=True))
         found[name] = {stamp: f"{'tips' if tips[stamp] else 'slides'}, by its margin" for stamp in events_of(stamps)}
     return found

@@ -155,8 +155,6 @@ def deck_of(record: str | None, contacts: str, seed: int, gravity: float, **sea:
 
     box = {name: sea[name] for name in ("length", "breadth", "draught", "roll_period", "roll_damping")}
     positive(**box)
-    vessel, waves = (
-        Vessel(**box, height=sea["deck_height"]),
-        waves_of(SeaState(sea["hs"], sea["tp"], sea["gamma"]), seed),
-    )
+    vessel = Vessel(**box, height=sea["deck_height"])
+    waves = waves_of(SeaState(sea["hs"], sea["tp"], sea["gamma"]), seed)
     return deck_in(waves, vessel, directions(waves, sea["heading"], sea["spread"], seed), gravity), float("inf")

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 from functools import partial
 from math import degrees
 from statistics import median
-from typing import Final, NamedTuple
+from typing import Final
 
 from rich.console import Console
 
@@ -26,27 +26,20 @@ MOST_IMPACTS: Final = 12
 """Impacts that are listed; the others of an accumulation say no more."""
 
 
-class ListedImpact(NamedTuple):
-    """An impact in a table, and where it was."""
-
-    place: str
-    strike: RockingImpact
-
-
-def _print_impacts(console: Console, header: str, impacts: Sequence[ListedImpact]) -> None:
-    """Print the first impacts of a motion, angular velocities as magnitudes."""
+def _print_impacts(console: Console, header: str, places: Sequence[str], strikes: Sequence[RockingImpact]) -> None:
+    """Print the first impacts of a motion and where they were, angular velocities as magnitudes."""
     columns = [
-        Column("time\ns", lambda row: f"{row.strike.time:.6f}"),
-        Column(header, lambda row: row.place, left=True),
-        Column("mode\n", lambda row: row.strike.outcome.mode.name, left=True),
-        Column("before\nrad/s", lambda row: f"{abs(row.strike.before.omega):.6f}"),
-        Column("after\nrad/s", lambda row: f"{abs(row.strike.after.omega):.6f}"),
-        Column("ratio\n", lambda row: _ratio(row.strike)),
-        Column("energy\nlost, J", lambda row: f"{row.strike.outcome.energy_lost + 0.0:.3g}"),
+        Column("time\ns", lambda k: f"{strikes[k].time:.6f}"),
+        Column(header, lambda k: places[k], left=True),
+        Column("mode\n", lambda k: strikes[k].outcome.mode.name, left=True),
+        Column("before\nrad/s", lambda k: f"{abs(strikes[k].before.omega):.6f}"),
+        Column("after\nrad/s", lambda k: f"{abs(strikes[k].after.omega):.6f}"),
+        Column("ratio\n", lambda k: _ratio(strikes[k])),
+        Column("energy\nlost, J", lambda k: f"{strikes[k].outcome.energy_lost + 0.0:.3g}"),
     ]
-    if impacts:
-        show(console, table_of(columns, impacts[:MOST_IMPACTS]))
-    say(console, *more(len(impacts) - MOST_IMPACTS, "impact", "read them with --json"))
+    if strikes:
+        show(console, table_of(columns, range(min(len(strikes), MOST_IMPACTS))))
+    say(console, *more(len(strikes) - MOST_IMPACTS, "impact", "read them with --json"))
 
 
 def _ratio(strike: RockingImpact) -> str:
@@ -57,7 +50,7 @@ def print_rocking(console: Console, rocking: Rocking) -> None:
     """Print the impacts of a motion and how it ended."""
     run = rocking.run
     say(console, f"{rocking.rocker.name}, {rocking.rocker.label}")
-    _print_impacts(console, "at\n", [ListedImpact("AB"[one.new], one) for one in run.impacts])
+    _print_impacts(console, "at\n", ["AB"[one.new] for one in run.impacts], run.impacts)
     for one in run.accumulations:
         if len(one.contacts) == 2:
             then = "slides" if one.slides else "stays"
@@ -70,8 +63,8 @@ def print_rolling(console: Console, rolling: Rolling) -> None:
     wheel = rolling.wheel
     slope = f"{degrees(wheel.hub.slope):.4g} degrees"
     say(console, f"wheel, {wheel.spokes} spokes {wheel.hub.leg:g} m long, slope {slope}")
-    listed = [ListedImpact(f"{NONE if old is None else old} > {new}", strike) for old, new, strike in rolling.impacts]
-    _print_impacts(console, "from, to\nspoke", listed)
+    places = [f"{NONE if old is None else old} > {new}" for old, new, _ in rolling.impacts]
+    _print_impacts(console, "from, to\nspoke", places, [one.strike for one in rolling.impacts])
     say(console, *rolling_sentences(rolling))
 
 

@@ -25,22 +25,6 @@ def shown(figures: Iterable[tuple[str, str, object]]) -> dict[str, str]:
     return {key: format(value, form) for key, form, value in figures if value is not None}
 
 
-class _Errors:
-    """The relative errors of the touchdowns that were scored: how many, and the median of the last ones."""
-
-    def __init__(self) -> None:
-        self.number = 0
-        self._last: deque[float] = deque(maxlen=REMEMBERED)
-
-    def add(self, error: float) -> None:
-        self.number += 1
-        self._last.append(error)
-
-    @property
-    def median(self) -> float | None:
-        return median(self._last) if self._last else None
-
-
 class Diagnostics:
     """Counts what happens to the messages, judges it, and reports it as a diagnostic_msgs/DiagnosticArray.
 
@@ -81,8 +65,9 @@ class Diagnostics:
         """Samples that were dropped because newer ones waited behind them."""
         self._last_stamps: dict[str, int] = {}
         self._touchdowns = self._landings = 0
-        self._whole = _Errors()
-        self._in_plane = _Errors()
+        # How many were scored by the whole twist and in the plane, and the last relative errors.
+        self._scored = Counter[str]()
+        self._errors = {which: deque[float](maxlen=REMEMBERED) for which in ("_6d", "")}
         self._second = 0.0, 0.0
         self._costs: list[float] | None = None
         self._refused_now: Counter[Refusal] = Counter()
@@ -146,10 +131,11 @@ class Diagnostics:
         self._body = body
         self._touchdowns += 1
         self._landings += score.landing is not None
-        if score.spatial is not None and not score.leftover_6d:
-            self._whole.add(score.spatial.error)
-        if score.scored and score.relative_error is not None:
-            self._in_plane.add(score.relative_error)
+        whole = score.spatial.error if score.spatial is not None and not score.leftover_6d else None
+        for which, error in (("_6d", whole), ("", score.relative_error if score.scored else None)):
+            if error is not None:
+                self._scored[which] += 1
+                self._errors[which].append(error)
 
     def second_over(self, now: float) -> bool:
         """Sum up the second that ends, and begin the next."""
@@ -191,12 +177,11 @@ class Diagnostics:
             ("cost_us.update.max", ".1f", longest),
             ("cost_us.total.median", ".1f", total),
             ("touchdowns", "d", self._touchdowns),
-            ("touchdowns.scored_6d", "d", self._whole.number),
-            ("touchdowns.median_relative_error_6d", ".4f", self._whole.median),
-            ("touchdowns.scored", "d", self._in_plane.number),
-            ("touchdowns.median_relative_error", ".4f", self._in_plane.median),
-            ("touchdowns.not_scored", "", driven),
         ]
+        for which, errors in self._errors.items():
+            figures.append((f"touchdowns.scored{which}", "d", self._scored[which]))
+            figures.append((f"touchdowns.median_relative_error{which}", ".4f", median(errors) if errors else None))
+        figures.append(("touchdowns.not_scored", "", driven))
         for feet in self.feet.values():
             figures += feet.figures()
         return figures

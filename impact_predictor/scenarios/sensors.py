@@ -163,8 +163,8 @@ class Odometer:
     ) -> None:
         self.frames, self.noise = (frame, child_frame), noise
         self._rng = rng if any((noise.position, noise.orientation, noise.velocity, noise.rate)) else None
-        self._of_pose = _covariance(noise.position, noise.orientation)
-        self._of_twist = _covariance(noise.velocity, noise.rate)
+        self._of_pose = covariance(noise.position, noise.orientation)
+        self._of_twist = covariance(noise.velocity, noise.rate)
 
     def samples(self, stamps: list[int], seen: Poses) -> Iterator[Sample]:
         """The samples at stamps (ns) from the poses then."""
@@ -242,7 +242,7 @@ def _misaligned(orientation: NDArray[np.float64], deviation: float, rng: np.rand
     return unit
 
 
-def _covariance(first: float, second: float) -> tuple[float, ...]:
+def covariance(first: float, second: float) -> tuple[float, ...]:
     """A covariance of two triples, each with one deviation."""
     if not (first or second):
         return _NONE

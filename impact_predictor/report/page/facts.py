@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from math import inf
+from operator import add
 from pathlib import Path
 from typing import Any, Final
 
@@ -53,10 +54,8 @@ class ReplayFacts:
             self.rows += rows
             for kind, counts in answer.get("kinds", {}).items():
                 if kind != ALL:
-                    before = self.recorded.get(kind, Announced(0, 0))
-                    self.recorded[kind] = Announced(
-                        before.touchdowns + counts["touchdowns"], before.announced + counts["announced"]
-                    )
+                    shown = counts["touchdowns"], counts["announced"]
+                    self.recorded[kind] = Announced(*map(add, self.recorded.get(kind, (0, 0)), shown))
             self.true += true
             told = answer.get("truth", {})
             self.truth.update({key: told[key] for key in ("touchdowns", "missed", "false", "unresolved") if told})

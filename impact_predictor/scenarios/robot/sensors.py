@@ -22,7 +22,7 @@ from ...ros.messages import (
 from ...ros.messages.walker_inputs import encode_feet, encode_joints, encode_schedule, encode_terrain, encode_wrench
 from ...stamps import NANOSECONDS
 from ..record import FRAME, RecordedMessage, nothing_happened, truth_messages
-from ..sensors import rotations, stamps_of
+from ..sensors import covariance, rotations, stamps_of
 from ..truth import LANDING_TOPIC, TrueLanding
 from .description import Values
 from .walk import STANDS, RobotStates, Walk
@@ -81,7 +81,7 @@ def _sensed(walk: Walk, sensors: WalkSensors) -> Iterator[RecordedMessage]:
         "joints": then.joints + position / machine.height * rng.standard_normal(then.joints.shape),
         "rates": then.rates + velocity / machine.height * rng.standard_normal(then.rates.shape),
     }
-    pose, twist = _covariance(position), _covariance(velocity)
+    pose, twist = covariance(position, 0.0), covariance(velocity, 0.0)
     forces_every = max(1, round(sensors.rate / FORCE_RATE))
     for k, stamp in enumerate(stamps):
         row = {name: rows[k] for name, rows in blurred.items()}
@@ -123,10 +123,6 @@ def _relative(seen: RobotStates) -> tuple[Values, Values, Values]:
 
 def _tuples(rows: Values) -> tuple[Vector3, ...]:
     return tuple(map(tuple, rows.tolist()))
-
-
-def _covariance(deviation: float) -> tuple[float, ...]:
-    return tuple(np.diag([deviation**2] * 3 + [0.0] * 3).ravel().tolist())
 
 
 def _terrain(walk: Walk) -> RecordedMessage:
