@@ -103,7 +103,10 @@ def table_file(path: str | Path, columns: Columns) -> Iterator[RowTable]:
 
     def write(rows: list[dict[str, Any]]) -> None:
         if is_text:  # lists with spaces between their items
-            rows = [row | {name: " ".join(map(str, row[name])) for name in lists if row.get(name)} for row in rows]
+            rows = [
+                row | {name: " ".join(map(str, row[name])) for name in lists if row.get(name) is not None}
+                for row in rows
+            ]
             writer.write_table(pyarrow.Table.from_pylist(rows, schema=schema))
         else:
             writer.write_table(pyarrow.Table.from_pylist(rows, schema=schema), row_group_size=len(rows))

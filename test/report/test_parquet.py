@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from ast import literal_eval
+from csv import DictReader
 from pathlib import Path
 from typing import Any
 
@@ -51,6 +52,13 @@ def test_there_is_a_row_for_each_touchdown_and_one_for_a_bag_without_any(tmp_pat
     assert (landing["impulse_normal"], landing["impulse_tangential"]) == (0.5, -0.125)
     assert (landing["others_impulse_normal"], landing["others_impulse_tangential"]) == (0.0, 0.0)
     assert (landing["velocity_change_omega"], landing["confirmed"], landing["late"]) == (1.0, True, -0.015)
+
+
+def test_a_touchdown_without_points_that_stood_has_an_empty_cell_in_a_csv_file(tmp_path: Path) -> None:
+    with table_file(tmp_path / "t.csv", TOUCHDOWNS) as table:
+        table.add(touchdown_rows({"bag": "a.mcap", "touchdowns": [TOUCHDOWN | {"old": (), "new": (0, 2)}]}))
+    (row,) = DictReader((tmp_path / "t.csv").read_text().splitlines())
+    assert (row["old"], row["new"]) == ("", "0 2")
 
 
 def test_the_documented_lines_read_the_table(
