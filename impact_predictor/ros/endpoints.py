@@ -201,7 +201,8 @@ class Misfits:
         return list(chain.from_iterable(self._found.values()))
 
     def _of(self, ours: Any, is_subscription: bool) -> Iterator[Misfit]:
-        topic, node, type_name = ours.topic_name, self._node, _type_name(ours.msg_type)
+        topic, node, kind = ours.topic_name, self._node, ours.msg_type
+        type_name = f"{kind.__module__.partition('.')[0]}/msg/{kind.__name__}"
         find = node.get_publishers_info_by_topic if is_subscription else node.get_subscriptions_info_by_topic
         for theirs in find(topic):
             if theirs.topic_type != type_name:
@@ -215,11 +216,6 @@ class Misfits:
                 offered, requested, whose = requested, offered, f"the publisher on {topic} from"
             if reason := _reason(offered, requested):
                 yield Misfit("QoS", topic, f"{whose} {theirs.node_name} {reason}")
-
-
-def _type_name(kind: type) -> str:
-    """The name of the ROS type of a message class."""
-    return f"{kind.__module__.partition('.')[0]}/msg/{kind.__name__}"
 
 
 def _reason(offered: QoSProfile, requested: QoSProfile) -> str:

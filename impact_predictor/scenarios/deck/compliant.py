@@ -103,9 +103,6 @@ class _Stretch(NamedTuple):
     rows: NDArray[np.float64]
     marks: NDArray[np.int64]
 
-    def until(self, count: int) -> _Stretch:
-        return _Stretch(self.times[:count], self.rows[:count], self.marks[:count])
-
 
 class _States(NamedTuple):
     """States (k, 13) of a unit at `times` (k,): mass centre, quaternion and velocities in the deck's frame."""
@@ -205,7 +202,7 @@ class _Compliant:
             while len(over) and time < duration and end is End.TIME_UP:
                 before, stretch = self.y.copy(), self._steps(time, duration)
                 if len(toppled := np.flatnonzero(rotations(stretch.rows[:, 3:7])[:, 2, 2] < 0.0)):
-                    end, stretch = End.OVERTURNED, stretch.until(int(toppled[0]) + 1)
+                    end, stretch = End.OVERTURNED, _Stretch._make(part[: int(toppled[0]) + 1] for part in stretch)
                 kept = np.append(np.arange(KEPT - 1, len(stretch.times) - 1, KEPT), len(stretch.times) - 1)
                 rows = np.concatenate([before[None], stretch.rows[kept, :13]])
                 yield self._span(time, np.append(time, stretch.times[kept]), rows, stretch, end)
