@@ -139,9 +139,7 @@ def contacts_of(scene: Scene, posture: Posture, scatter: Scatter | None = None) 
     base = total([gaps[i] for i in old]) / len(old) if old else 0.0
     due = [(base - gaps[i]) / rates[i] for i in closing]
     last = max(0.0, min(due)) + scene.contact_time
-    new = [
-        i for i, time in zip(closing, due, strict=True) if time + (slack + noise * max(0.0, time)) / rates[i] <= last
-    ]
+    new = [i for k, i in enumerate(closing) if due[k] + (slack + noise * max(0.0, due[k])) / rates[i] <= last]
     if min([rates[i] for i in new]) >= slowest:
         return None
     return ActiveContacts(tuple(old), tuple(new))

@@ -157,8 +157,8 @@ class TouchdownRecorder:
         least = GAINS * gain * to_last
         falling = [
             i
-            for i, (high, gap) in enumerate(zip(before, gaps, strict=True))
-            if high - gap > least and deepest < gap < (high - gap) * ratio + reach
+            for i, gap in enumerate(gaps)
+            if before[i] - gap > least and deepest < gap < (before[i] - gap) * ratio + reach
         ]
         steps = to_last, step, to_after
         if not falling or max(steps) > UNEVEN * min(steps):

@@ -128,8 +128,8 @@ class DifferenceNoise:
         of_a, of_d = -(v - u) * (1.0 - u) * (1.0 - v), u * v * (v - u)
         scale = len(values) * (of_a * of_a + of_b * of_b + of_c * of_c + of_d * of_d)
         whole = 0.0
-        for p, q, r, s in zip(a, b, c, d, strict=True):
-            found = of_a * p + of_b * q + of_c * r + of_d * s
+        for i in range(len(values)):
+            found = of_a * a[i] + of_b * b[i] + of_c * c[i] + of_d * d[i]
             whole += found * found
         self.seen = min(self.seen + 1, AVERAGED)
         self.square += (whole / scale - self.square) / self.seen

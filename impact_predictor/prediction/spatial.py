@@ -92,7 +92,7 @@ class SpatialModel:
         scene, gaps, rates = self._scene, posture.gaps, posture.rates
         limit = max(2.0 * hardly(scene), still_of(rates, self.scatter.rate))
         near = max(scene.tolerance, self.scatter.gap)
-        stands = [gap <= near and -limit <= rate <= limit for gap, rate in zip(gaps, rates, strict=True)]
+        stands = [gap <= near and -limit <= rates[i] <= limit for i, gap in enumerate(gaps)]
         # An averaged twist is that of half its window ago: the motion is followed from there.
         age = 0.5 * scene.twist_window
         velocity, spin = to_world(posture.axes, posture.velocity), to_world(posture.axes, sample.angular)
@@ -159,8 +159,8 @@ class SpatialModel:
         new = tuple(
             [
                 i
-                for i, (gap, rate) in enumerate(zip(end.gaps, end.rates, strict=True))
-                if i == end.point or (i not in old and rate < 0.0 and gap <= slack - window * rate)
+                for i, rate in enumerate(end.rates)
+                if i == end.point or (i not in old and rate < 0.0 and end.gaps[i] <= slack - window * rate)
             ]
         )
         orientation = composed(self._frame, state.orientation)

@@ -201,8 +201,8 @@ class SpatialImpactModel:
         """The numbers of a collision as the law takes them (see `mechanics.impact.spatial_body`)."""
         scene, (linear, angular) = self._scene, collision.before
         numbers = [scene.mass, *six_numbers(tensor_to_world(axes, scene.inertia)), *linear, *angular]
-        for arm, gap in zip(collision.arms, collision.gaps, strict=True):
-            numbers += (*arm, *scene.normal, scene.friction, scene.restitution, 0.0, 0.0, 0.0, gap)
+        for i, arm in enumerate(collision.arms):
+            numbers += (*arm, *scene.normal, scene.friction, scene.restitution, 0.0, 0.0, 0.0, collision.gaps[i])
         return np.array(numbers)
 
 

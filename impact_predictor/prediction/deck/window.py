@@ -164,8 +164,10 @@ class MotionWindow:
         stamps = self._stamps
         self.balance.hear(stamp, values)
         stamps.append(stamp)
-        for channel, value in zip(self._channels, values, strict=True):
-            channel.append(value)
+        first, second, third = self._channels
+        first.append(values[0])
+        second.append(values[1])
+        third.append(values[2])
         begin = stamp - round(self.span * NANOSECONDS)
         while len(stamps) > 3 and stamps[1] <= begin:
             stamps.popleft()
@@ -183,8 +185,8 @@ class MotionWindow:
         slopes = []
         for channel in self._channels:
             slope, end = 0.0, channel[-1]
-            for weight, value in zip(weights, channel, strict=True):
-                slope += weight * (value - end)  # a large constant would leave its rounding in the slope
+            for k, value in enumerate(channel):
+                slope += weights[k] * (value - end)  # a large constant would leave its rounding in the slope
             slopes.append(scale * slope)
         x, y, z = slopes
         self.balance.found(last, (x, y, z), (last - self._stamps[0]) / NANOSECONDS)

@@ -235,11 +235,11 @@ class FeetContacts(Contacts):
             status = self._found = Status.ACCEPTED
             supported = any(point.stands or point.closed for point in self._points)
             lowest = -inf if supported else min([frame.gap for frame in found]) + self.scene.tolerance
-            landed = [
-                point.add(frame, self._ground, base, alone=frame.gap <= lowest)
-                for point, frame in zip(self._points, found, strict=True)
-            ]
-            for i in [i for i, has_landed in enumerate(landed) if has_landed]:
+            landed = []
+            for i, frame in enumerate(found):
+                if self._points[i].add(frame, self._ground, base, alone=frame.gap <= lowest):
+                    landed.append(i)
+            for i in landed:
                 self._landings.land(i)
             self._doubts.see(found, any(point.stands for point in self._points), self._ground)
             self._clock.see(base, geometry.points, self._points)

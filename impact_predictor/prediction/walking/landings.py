@@ -120,8 +120,7 @@ class LandingTracker:
             if (point.stands or point.closed) and self._holds(point.trajectory.frames[-1])
         ]
         places = [
-            point.trajectory.frames[-1].position if due is None else due.position
-            for point, due in zip(points, dues, strict=True)
+            points[i].trajectory.frames[-1].position if due is None else due.position for i, due in enumerate(dues)
         ]
         following = None
         while landings:

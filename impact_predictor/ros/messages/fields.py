@@ -47,6 +47,20 @@ if TYPE_CHECKING:
     from ...prediction.spatial_score import Lift
 
 
+def add_value(pairs: list[bytes], key: bytes, value: object) -> None:
+    """Append a value to the pairs of a status (see `add_pair`); of None nothing is told."""
+    if isinstance(value, float):
+        # `add_pair` written out, for most values are numbers: it makes a message a tenth cheaper.
+        raw = repr(float(value)).encode()
+        size = len(raw)
+        pairs.append(key)
+        pairs.append(LENGTHS[size])
+        pairs.append(raw)
+        pairs.append(PADDING[size & 3])
+    elif value is not None:
+        add_pair(pairs, key, text(value))
+
+
 class Table:
     """The fields of a record, in the order of the diagnostic array."""
 
@@ -60,14 +74,11 @@ class Table:
             found = get(record)
             if found is None:
                 continue
-            for key, value in zip(keys, (found,) if told is None else told(found), strict=True):
-                if isinstance(value, float):
-                    # `add_pair` written out, for most values are numbers: it makes a message a tenth cheaper.
-                    raw = repr(float(value)).encode()
-                    size = len(raw)
-                    pairs += (key, LENGTHS[size], raw, PADDING[size & 3])
-                elif value is not None:
-                    add_pair(pairs, key, text(value))
+            if told is None:
+                add_value(pairs, keys[0], found)
+            else:
+                for k, value in enumerate(told(found)):
+                    add_value(pairs, keys[k], value)
 
 
 def _mode(prediction: Prediction) -> Mode:

@@ -62,7 +62,7 @@ def _truth(value: bool) -> str:
 
 
 def _items(items: Iterable[object]) -> str:
-    return " ".join(map(str, items))
+    return " ".join([str(item) for item in items])
 
 
 _TEXTS: Final[dict[type, Callable[[Any], str]]] = {
