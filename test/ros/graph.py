@@ -25,6 +25,12 @@ from impact_predictor.ros.processes import Child
 PATIENCE = 60.0
 PAUSE = 0.02
 
+WITHOUT_NUMBA = Path(__file__).with_name("without_numba")
+"""A folder of which a process finds no numba: to load it, and what it compiled, takes most of the start of a node. The
+answers are the same to the last bit, which `test_determinism.py` shows; the nodes of `test_node_start.py`,
+`test_live_and_replay.py` and `test_endurance.py` have numba.
+"""
+
 
 class Peer:
     """The rest of the ROS graph: what publishes to the node and hears it."""
@@ -98,13 +104,19 @@ def arguments_of(values):
     return ["--ros-args", *[word for one in given for word in ("-p", one)]]
 
 
+def without_numba(*path):
+    """The environment of a process that finds no numba, and what else it finds in the place of PYTHONPATH."""
+    found = path or os.environ.get("PYTHONPATH", "").split(os.pathsep)
+    return {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, [str(WITHOUT_NUMBA), *found]))}
+
+
 def serve(values, messages, outputs):
     """What the node publishes when it is told messages one by one, and which topics it reads."""
     done = subprocess.run(
         [sys.executable, str(Path(__file__).with_name("serve.py")), *arguments_of(values)],
         input=pickle.dumps((messages, outputs)),
         capture_output=True,
-        env={**os.environ, "PYTHONPATH": os.pathsep.join([str(Path(__file__).parents[2]), *sys.path])},
+        env=without_numba(str(Path(__file__).parents[2]), *sys.path),
         timeout=120.0,
     )
     assert done.returncode == 0, done.stderr.decode()
@@ -139,9 +151,10 @@ def peer_of_node(outputs=tuple(OUTPUTS)):
 
 
 @contextmanager
-def running_node(scene, *arguments):
+def running_node(scene, *arguments, numba=False):
     """The node as a process, with a parameter file and more arguments; it must end in order when asked to."""
     ros = ("--ros-args", "--params-file", str(scene), "-p", "messages:=strings", *arguments)
-    with Child("node", dict(os.environ), "-m", "impact_predictor.ros.node", *ros) as child:
+    environment = dict(os.environ) if numba else without_numba()
+    with Child("node", environment, "-m", "impact_predictor.ros.node", *ros) as child:
         yield child
         child.end()

@@ -1,6 +1,5 @@
 """Which samples are answered when several wait, and what becomes of a node that cannot keep up."""
 
-import os
 import time
 from statistics import median
 
@@ -8,6 +7,7 @@ import pytest
 
 pytest.importorskip("rclpy", reason="the node needs ROS 2: source it, or install the extra `ros`")
 
+from graph import without_numba
 from nav_msgs.msg import Odometry
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 from test_node import FIXED_POINTS, SCENE, odometry
@@ -129,7 +129,7 @@ def feed(peer, count, rate):
 @pytest.mark.parametrize("executor", ["single", "events"])
 def test_a_node_that_cannot_keep_up_answers_the_newest_sample_and_tells_what_it_dropped(peer, executor):
     arguments = (*FIXED_POINTS, "-p", f"executor:={executor}")
-    with Child("node", dict(os.environ), "-c", SLOW, *arguments) as node:
+    with Child("node", without_numba(), "-c", SLOW, *arguments) as node:
         count = 300
         feed(peer, count, 400.0)
         peer.until(lambda: counts(peer) == count)

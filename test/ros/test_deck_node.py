@@ -1,6 +1,5 @@
 """The node for several bodies over a moving support: the same as a replay, and never OK where something is wrong."""
 
-import os
 import struct
 import time
 from itertools import islice
@@ -28,7 +27,7 @@ from impact_predictor.scenarios.record import Sensors
 
 pytest.importorskip("rclpy", reason="the node needs ROS 2: source it, or install the extra `ros`")
 
-from graph import arguments_of, serve, served_and_replayed
+from graph import arguments_of, serve, served_and_replayed, without_numba
 
 from impact_predictor.ros.process import message_class
 
@@ -189,7 +188,7 @@ def test_a_sensor_that_feels_gravity_the_wrong_way_round_is_named_and_nothing_is
 @pytest.mark.slow
 def test_a_deck_and_its_cargo_that_fall_silent_are_stale_though_no_message_comes(peer):
     values = one_crate(executor="events")
-    with Child("node", dict(os.environ), "-m", "impact_predictor.ros.node", *arguments_of(values)) as node:
+    with Child("node", without_numba(), "-m", "impact_predictor.ros.node", *arguments_of(values)) as node:
         kind = message_class(ODOMETRY)
         support, body = (peer.publisher(kind, topic, 100) for topic in ("support/odom", "crate/odom"))
         stamps = iter(range(100 * SECOND, 200 * SECOND, SECOND // 20))

@@ -88,7 +88,7 @@ def test_whatever_happens_to_clocks_and_order_the_node_answers_like_the_library_
         name: [data for data in map(output.encode, accepted) if data is not None] for name, output in OUTPUTS.items()
     }
     options = (*FIXED_POINTS, *EVERY_SAMPLE, "-p", f"executor:={executor}", "-p", f"use_sim_time:={simulated}")
-    with running_node(SCENE, *options) as node:
+    with running_node(SCENE, *options, numba=True) as node:
         # What the node answers before it has found its listeners nobody hears.
         samples = peer.found(peer.publisher(Odometry, "odom", RELIABLE))
         half, whole = len(sent) // 2, len(sent)
