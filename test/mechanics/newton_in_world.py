@@ -6,7 +6,10 @@ from what the contacts' accelerations there must be.
 
 from __future__ import annotations
 
+import cmath
 import math
+from collections.abc import Sequence
+from functools import lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -63,23 +66,29 @@ def contacts_of(body: Body) -> tuple[Any, ...]:
 
 
 class Touch(NamedTuple):
-    """A contact in the world at one instant: the lever from the mass centre to it, and the support there."""
+    """A contact in the world at one instant: the lever from the mass centre to it, and the support there.
 
-    lever: Any
-    normal: Any
-    tangent: Any
+    Vectors are complex numbers, x + iy: most of the time of these tests goes into this law.
+    """
+
+    lever: complex
+    normal: complex
+    tangent: complex
     gap: float
+    slips: complex
+    """Velocity against the support's point under it ..."""
     slip: float
-    ground: Any
+    """... and the part of it along the tangent."""
+    ground: complex
     """Acceleration of the support's point under it."""
 
 
-def cross(a: Any, b: Any) -> float:
-    return float(a[0] * b[1] - a[1] * b[0])
+def dot(a: complex, b: complex) -> float:
+    return a.real * b.real + a.imag * b.imag
 
 
-def left_of(a: Any) -> Any:
-    return np.array([-a[1], a[0]])
+def cross(a: complex, b: complex) -> float:
+    return a.real * b.imag - a.imag * b.real
 
 
 def is_disc(body: Body) -> bool:
@@ -88,74 +97,89 @@ def is_disc(body: Body) -> bool:
 
 def touch(body: Body, support: Support, i: int, time: float, y: Any) -> Touch:
     """Contact i of a body with place, angle and their rates `y` in the world."""
-    moves = support.motion(time)
-    contact, edge_0 = contacts_of(body)[i], contacts_of(body)[0]
-    c, s = math.cos(moves.angle), math.sin(moves.angle)
-    origin, speed, push = (np.array(pair) for pair in ((moves.x, moves.y), (moves.vx, moves.vy), (moves.ax, moves.ay)))
-    place, velocity, omega = y[:2], y[3:5], y[5]
-    if is_disc(body):
-        edge = np.array([contact.x - edge_0.x, contact.y - edge_0.y])
-        point = origin + np.array([c * edge[0] - s * edge[1], s * edge[0] + c * edge[1]])
-        distance = np.linalg.norm(place - point)
-        normal = (place - point) / distance
-        gap = float(distance) - math.hypot(contact.x, contact.y)
-    else:
-        cb, sb = math.cos(y[2]), math.sin(y[2])
-        point = place + np.array([cb * contact.x - sb * contact.y, sb * contact.x + cb * contact.y])
-        normal = np.array([-s, c])
-        gap = float(normal @ (point - origin))
-    tangent = np.array([normal[1], -normal[0]])
-    lever, arm = point - place, point - origin
-    ground = push + moves.acceleration * left_of(arm) - moves.rate**2 * arm
-    slip = velocity + omega * left_of(lever) - (speed + moves.rate * left_of(arm))
-    return Touch(lever, normal, tangent, gap, float(tangent @ slip), ground)
+    return touches(body, support, [i], time, y)[0]
 
 
-def newton(body: Body, support: Support, states: str, time: float, y: Any) -> tuple[list[float], Any]:
+def touches(body: Body, support: Support, which: Sequence[int], time: float, y: Any) -> list[Touch]:
+    """Some contacts at the same instant."""
+    moves = SupportMotion(*map(float, support.motion(time)))
+    px, py, angle, vx, vy, omega = map(float, y)
+    turned, place, velocity = cmath.rect(1.0, moves.angle), complex(px, py), complex(vx, vy)
+    origin, speed, push = complex(moves.x, moves.y), complex(moves.vx, moves.vy), complex(moves.ax, moves.ay)
+    contacts, disc, found = contacts_of(body), is_disc(body), []
+    for i in which:
+        contact, edge_0 = contacts[i], contacts[0]
+        if disc:
+            point = origin + turned * complex(contact.x - edge_0.x, contact.y - edge_0.y)
+            distance = abs(place - point)
+            normal = (place - point) / distance
+            gap = distance - math.hypot(contact.x, contact.y)
+        else:
+            point = place + cmath.rect(1.0, angle) * complex(contact.x, contact.y)
+            normal = 1j * turned
+            gap = dot(normal, point - origin)
+        tangent = -1j * normal
+        lever, arm = point - place, point - origin
+        ground = push + moves.acceleration * 1j * arm - moves.rate**2 * arm
+        slips = velocity + omega * 1j * lever - (speed + moves.rate * 1j * arm)
+        found.append(Touch(lever, normal, tangent, gap, slips, dot(tangent, slips), ground))
+    return found
+
+
+def newton(body: Body, support: Support, states: str, time: float, y: Any) -> tuple[list[float], list[float]]:
     """Rates of (x, y, angle, vx, vy, omega), and the reactions, from a linear system.
 
     `states` of the contacts: O open, S sticks, + or - slips along +t or -t. The reactions are N and T of a contact that
     sticks and N of one that slips, in this order.
     """
-    moves = support.motion(time)
-    velocity, omega = y[3:5], y[5]
-    rows, wanted, levers = [], [], []
-    for i, state in enumerate(states):
-        if state == "O":
-            continue
-        lever, normal, tangent, _, _, ground = touch(body, support, i, time, y)
-        arm = y[:2] + lever - np.array([moves.x, moves.y])
-        ground_speed = np.array([moves.vx, moves.vy]) + moves.rate * left_of(arm)
+    rate, omega = float(support.motion(time).rate), float(y[5])
+    # A direction and the moment about the mass centre that a force of 1 along it has.
+    rows: list[tuple[complex, float]] = []
+    levers: list[tuple[complex, float]] = []
+    wanted: list[float] = []
+    closed = [i for i, state in enumerate(states) if state != "O"]
+    for i, contact in zip(closed, touches(body, support, closed, time, y), strict=True):
+        lever, normal, tangent, _, slips, _, ground = contact
+        along_n, along_t = (normal, cross(lever, normal)), (tangent, cross(lever, tangent))
         if is_disc(body):
             # The distance from the edge stays, and the rim rolls on it or slips.
-            relative = velocity - ground_speed
-            want_n, want_t = normal @ ground - relative @ relative / math.hypot(*lever), tangent @ ground
-            row_n = np.array([normal[0], normal[1], 0.0])
+            relative = abs(slips - omega * 1j * lever)
+            want_n, want_t = dot(normal, ground) - relative**2 / abs(lever), dot(tangent, ground)
+            row_n = normal, 0.0
         else:
-            slip = velocity + omega * left_of(lever) - ground_speed
-            want = ground + 2.0 * moves.rate * left_of(slip) + omega**2 * lever
-            want_n, want_t = normal @ want, tangent @ want
-            row_n = np.array([*normal, cross(lever, normal)])
-        row_t = np.array([*tangent, cross(lever, tangent)])
-        friction = {"S": None, "+": -1.0, "-": 1.0}[state]
+            want = ground + 2.0 * rate * 1j * slips + omega**2 * lever
+            want_n, want_t = dot(normal, want), dot(tangent, want)
+            row_n = along_n
+        friction = {"S": None, "+": -1.0, "-": 1.0}[states[i]]
         if friction is None:
-            rows += [row_n, row_t]
+            rows += [row_n, along_t]
             wanted += [want_n, want_t]
-            levers += [[*normal, cross(lever, normal)], [*tangent, cross(lever, tangent)]]
+            levers += [along_n, along_t]
         else:
             along = normal + friction * contacts_of(body)[i].friction * tangent
             rows.append(row_n)
             wanted.append(want_n)
-            levers.append([*along, cross(lever, along)])
-    free = np.array([0.0, -support.gravity, 0.0])
-    reaction = np.zeros(0)
-    if rows:
-        weights = np.array([1.0 / body.mass, 1.0 / body.mass, 1.0 / body.inertia])
-        forces = np.array(levers)
-        system = np.array(rows) @ (weights[:, None] * forces.T)
-        reaction = np.linalg.lstsq(system, np.array(wanted) - np.array(rows) @ free, rcond=None)[0]
-        free = free + weights * (forces.T @ reaction)
-    return [y[3], y[4], y[5], *free], reaction
+            levers.append((along, cross(lever, along)))
+    fall = complex(0.0, -support.gravity)
+    system = [
+        [dot(row, force) / body.mass + arm * moment / body.inertia for force, moment in levers] for row, arm in rows
+    ]
+    reaction = solved(system, [want - dot(row, fall) for want, (row, _) in zip(wanted, rows, strict=True)])
+    free, turns = fall, 0.0
+    for (force, moment), size in zip(levers, reaction, strict=True):
+        free, turns = free + size * force / body.mass, turns + size * moment / body.inertia
+    return [*map(float, y[3:]), free.real, free.imag, turns], reaction
+
+
+def solved(system: list[list[float]], wanted: list[float]) -> list[float]:
+    """The reactions of a linear system; the least ones where two contacts bear what one could."""
+    if len(wanted) == 1 and system[0][0]:
+        return [wanted[0] / system[0][0]]
+    if len(wanted) == 2:
+        ((a, b), (c, d)), (first, second) = system, wanted
+        if abs(a * d - b * c) > 1e-6 * (abs(a * d) + abs(b * c)):
+            return [(first * d - b * second) / (a * d - b * c), (a * second - first * c) / (a * d - b * c)]
+    return list(np.linalg.lstsq(np.array(system), np.array(wanted), rcond=None)[0].tolist()) if wanted else []
 
 
 class Course(NamedTuple):
@@ -175,8 +199,8 @@ def margins(body: Body, support: Support, states: str, time: float, y: Any) -> d
     """What ends a phase where it falls to zero, by the states after it or by the contact that strikes."""
     found: dict[str, float] = {}
     reaction = newton(body, support, states, time, y)[1]
-    for i, (state, of) in enumerate(zip(states, contacts_of(body), strict=True)):
-        contact = touch(body, support, i, time, y)
+    every = touches(body, support, range(len(states)), time, y)
+    for i, (state, of, contact) in enumerate(zip(states, contacts_of(body), every, strict=True)):
         if state == "O":
             found[str(i)] = contact.gap
         elif state in "+-":
@@ -224,9 +248,14 @@ def strike_by_newton(
         begins.append(time)
         names = list(margins(body, support, states, time, y))
 
-        def margin(t: float, y: Any, name: str, states: str = states, begin: float = time) -> float:
+        # Of a step each margin is asked for.
+        @lru_cache(maxsize=2)
+        def all_margins(t: float, *y: float, states: str = states) -> dict[str, float]:
+            return margins(body, support, states, t, y)
+
+        def margin(t: float, y: Any, name: str, asked: Any = all_margins, begin: float = time) -> float:
             # What begins at zero is not over as soon as rounding says so.
-            return margins(body, support, states, t, y)[name] if t > begin + 1e-9 else 1.0
+            return float(asked(t, *y)[name]) if t > begin + 1e-9 else 1.0
 
         events: list[Any] = [lambda t, y, name=name, margin=margin: margin(t, y, name) for name in names]
         for event in events:
