@@ -26,15 +26,28 @@ def harmonic_support(
 ) -> MovingSupport:
     """A support whose angle (rad) and origin (m, in the world's axes) are sums of waves."""
     columns = [np.array([*waves, Wave(0.0, 0.0)]).T for waves in (angle, x, y)]
+    each = [[*waves] for waves in (angle, x, y)]
     fastest = max(float(np.abs(frequency).max()) for _, frequency, _ in columns)
 
     def motion(time: Any) -> SupportMotion:
-        sums = []
+        sums: list[tuple[Any, Any, Any]] = []
+        if isinstance(time, float):  # arrays of two or three numbers take ten times as long
+            for waves in each:
+                swing = slope = bend = 0.0
+                for amplitude, frequency, phase in waves:
+                    turn = frequency * time + phase
+                    part, rate = amplitude * math.sin(turn), amplitude * frequency
+                    swing, slope, bend = swing + part, slope + rate * math.cos(turn), bend - frequency**2 * part
+                sums.append((swing, slope, bend))
+            return told(*sums)
         for amplitude, frequency, phase in columns:
             turns = np.multiply.outer(np.asarray(time, dtype=float), frequency) + phase
             swing, slope = amplitude * np.sin(turns), amplitude * frequency * np.cos(turns)
             sums.append((swing.sum(axis=-1), slope.sum(axis=-1), -(frequency**2 * swing).sum(axis=-1)))
-        (a, da, dda), (px, vx, ax), (py, vy, ay) = sums
+        return told(*sums)
+
+    def told(turns: tuple[Any, Any, Any], along: tuple[Any, Any, Any], up: tuple[Any, Any, Any]) -> SupportMotion:
+        (a, da, dda), (px, vx, ax), (py, vy, ay) = turns, along, up
         return SupportMotion(angle=a, rate=da, acceleration=dda, x=px, y=py, vx=vx, vy=vy, ax=ax, ay=ay)
 
     return MovingSupport(motion, 2.0 * math.pi / fastest, gravity)
