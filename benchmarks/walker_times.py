@@ -27,6 +27,7 @@ import sys
 from bisect import bisect_left, bisect_right
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import cache
 from pathlib import Path
 from typing import Any, Final, NamedTuple
 
@@ -146,13 +147,15 @@ class FootCourse:
         return min(falls, default=None)
 
 
-def replayed(walk: Walk) -> Replayed:
+def replayed(walk: Walk, lines: Sequence[str] = LINES) -> Replayed:
+    """What the product tells of a record, and of these lines the simple ones."""
     machine, walker, courses = walk.scene, Predictor(walk.scene), defaultdict[str, FootCourse](FootCourse)
     assert machine.walking is not None
     stands, scores = defaultdict[str, list[int]](list), list[Score]()
-    told: dict[str, dict[str, list[Told]]] = {line: defaultdict(list) for line in LINES}
+    told: dict[str, dict[str, list[Told]]] = {line: defaultdict(list) for line in lines}
     planned: dict[str, list[int]] = defaultdict(list)
     points: Sequence[Vector3] = ()
+    simple = len(lines) > 1
     for message in walk.messages:
         if not isinstance(message, Sample):
             walker.tell(message)
@@ -164,7 +167,7 @@ def replayed(walk: Walk) -> Replayed:
             continue
         now, axes = message.stamp, axes_of(message.orientation)
         gaps = []
-        for arm in points:
+        for arm in points if simple else ():
             place = np.add(message.position, to_world(axes, arm))
             gaps.append(float(np.dot(machine.normal, place)) - machine.height)
         each = machine.walking.points
@@ -172,13 +175,17 @@ def replayed(walk: Walk) -> Replayed:
         scores += [] if prediction.score is None else [prediction.score]
         for number, foot in enumerate(prediction.feet):
             course = courses[foot.name]
-            course.add(now, min(gaps[number * each : (number + 1) * each]))
+            if simple:
+                course.add(now, min(gaps[number * each : (number + 1) * each]))
             if foot.stands:
                 stands[foot.name].append(now)
                 continue
-            answers: dict[str, float | None] = {"product": foot.lead_time, **course.lead_times()}
-            answers["clock"] = clock(walk.landings.get(foot.name, ()), planned.get(foot.name, []), now)
-            for line, lead_time in answers.items():
+            answers: dict[str, float | None] = {"product": foot.lead_time}
+            if simple:
+                answers |= course.lead_times()
+                answers["clock"] = clock(walk.landings.get(foot.name, ()), planned.get(foot.name, []), now)
+            for line in lines:
+                lead_time = answers[line]
                 if lead_time is not None and 0.0 < lead_time <= machine.horizon:
                     deviation = foot.landing_deviation if line == "product" else None
                     told[line][foot.name].append(Told(now, now + round(lead_time * 1e9), deviation))
@@ -266,9 +273,9 @@ def worse(line: Line, other: Line, lead: float) -> tuple[float, float, float] | 
     return float(apart.mean()), float(low), float(high)
 
 
-def figures(walk: Walk) -> list[dict[str, Any]]:
-    """What is printed of a record, in ms and parts of 1, a row for each line."""
-    replay, found = replayed(walk), list[dict[str, Any]]()
+def figures(walk: Walk, asked: Sequence[str] = LINES) -> list[dict[str, Any]]:
+    """What is printed of a record, in ms and parts of 1, a row for each line that is asked for."""
+    replay, found = replayed(walk, asked), list[dict[str, Any]]()
     samples = [message.stamp for message in walk.messages if isinstance(message, Sample)]
     lines = {name: line_of(walk, told, samples) for name, told in replay.told.items()}
     for name, line in lines.items():
@@ -286,7 +293,7 @@ def figures(walk: Walk) -> list[dict[str, Any]]:
                 ahead |= {"within_one": float((off <= 1.0).mean()), "within_two": float((off <= 2.0).mean())}
             row[f"{1e3 * lead:.0f}"] = ahead
         row |= {"rows": line.rows, "false": line.false} | (happened(walk, replay) if name == LINES[0] else {})
-        if name != "speed" and (apart := worse(line, lines["speed"], 0.02)) is not None:
+        if name != "speed" and "speed" in lines and (apart := worse(line, lines["speed"], 0.02)) is not None:
             row["worse"] = [1e3 * one for one in apart]
         found.append(row)
     return found
@@ -320,12 +327,13 @@ def table_of(rows: Iterable[Mapping[str, Any]]) -> Any:
     return table
 
 
-def plan() -> list[Adapted]:
+@cache
+def plan() -> tuple[Adapted, ...]:
     """The plan of HyQ."""
     path, topic, kind = PLAN
     with Bag(path) as bag:
         read = readers(bag, {topic: kind})[topic]
-        return [read(message.data) for message in bag.messages({topic: kind})]
+        return tuple(read(message.data) for message in bag.messages({topic: kind}))
 
 
 def scene() -> Scene:

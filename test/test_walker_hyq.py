@@ -149,7 +149,7 @@ def test_with_noise_none_is_missed_and_none_is_false(noise: ModuleType, seed: in
     # The walk and the change to a trot.
     landings = {foot: [one for one in stamps if one < 4 * 10**9] for foot, stamps in walk.landings.items()}
     walk = noise.with_noise(walk._replace(messages=walk.messages[:3200], landings=landings), seed, on_robot=on_robot)
-    product, *_ = noise.figures(walk)
+    (product,) = noise.figures(walk, ["product"])
     assert (product["landings"], product["false"], product["none"], product["noticed"]) == (16, 0, 0, 1.0)
     assert product["20"]["told"] == 1.0
     # Twice the medians over 20 seeds, for 16 landings scatter.
