@@ -5,8 +5,6 @@ from __future__ import annotations
 import importlib
 import json
 import re
-import subprocess
-import sys
 from collections import Counter
 from collections.abc import Callable
 from math import copysign
@@ -16,6 +14,8 @@ from typing import Any
 
 import numpy as np
 import pytest
+from click.testing import Result
+from command_line import invoke
 from rosbags.rosbag1 import Reader, Writer
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 from scipy.spatial.transform import Rotation
@@ -33,15 +33,14 @@ TOPIC, TYPE = "/xpp/state_des", "xpp_msgs/msg/RobotStateCartesian"
 pytestmark = pytest.mark.slow
 
 
-def replay(*arguments: object) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, "-m", "impact_predictor", "replay", *map(str, arguments)]
-    return subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=120, check=False)
+def replay(*arguments: object) -> Result:
+    return invoke("replay", *map(str, arguments))
 
 
 @pytest.fixture(scope="module")
 def answer() -> dict[str, Any]:
-    result = replay("examples/hyq/hyq.bag", "--params", SCENE, "--json")
-    assert result.returncode == 0, result.stderr
+    result = replay(BAG, "--params", SCENE, "--json")
+    assert result.exit_code == 0, result.stderr
     assert "took /xpp/state_des as odom and contact_geometry: its messages have an adapter" in result.stderr
     told: dict[str, Any] = json.loads(result.stdout)
     return told
@@ -96,7 +95,7 @@ def test_the_plans_own_flags_and_forces_are_no_input(tmp_path: Path) -> None:
     for name, change in (("as_planned", lambda number, message: None), ("inverted", invert)):
         bag, output = rewrite(tmp_path / f"{name}.bag", change), tmp_path / f"{name}.mcap"
         result = replay(bag, "--params", SCENE, "-o", output, "--json")
-        assert result.returncode == 0, result.stderr
+        assert result.exit_code == 0, result.stderr
         outputs.append(list(read_messages(output, topics(output))))
     # At least a mode and a prediction for each of 1200 samples.
     assert len(outputs[0]) >= 2400
@@ -117,7 +116,7 @@ def test_bad_messages_are_counted_by_what_is_wrong_and_the_others_still_predict(
 
     bag = rewrite(tmp_path / "spoilt.bag", spoil)
     result = replay(bag, "--params", SCENE, "--json")
-    assert result.returncode == 0, result.stderr
+    assert result.exit_code == 0, result.stderr
     answer = json.loads(result.stdout)
     assert answer["geometry_statuses"]["FEET_CHANGED"] == 12
     assert answer["statuses"]["NOT_FINITE"] == 12
