@@ -20,7 +20,7 @@ from impact_predictor.parameters.file import read_parameters
 from impact_predictor.parameters.validation import PARAMETERS, validate
 from impact_predictor.prediction.monitor import Monitor
 from impact_predictor.prediction.scene import features_of, scenes_of
-from impact_predictor.ros.messages import INPUT_TYPES
+from impact_predictor.ros.messages import INPUT_TYPES, OUTPUTS
 from impact_predictor.stamps import NANOSECONDS
 
 ROOT = Path(__file__).parents[1]
@@ -75,10 +75,9 @@ NEEDED = {
 
 PROBE = """
 import os, pickle, sys
+from importlib import import_module
 from importlib.machinery import ModuleSpec
 in_node, heavy = sys.argv[1] == "node", sys.argv[2:]
-if in_node:
-    import rclpy
 
 class Imported:
     def __init__(self):
@@ -96,12 +95,19 @@ class Imported:
         pass
 
 # Once for all of them: in each it counts only whether they are asked for.
-import rosbags.highlevel, scipy.optimize, scipy.special
+import inspect, rosbags.highlevel, rosbags.typesys.stores.ros2_jazzy, scipy.optimize, scipy.special
+cases, types = pickle.load(sys.stdin.buffer)
+if in_node:
+    import rclpy.executors, rclpy.node, rclpy.qos_overriding_options
+    from rclpy.type_support import check_for_type_support
+    for package, kind in types:
+        check_for_type_support(getattr(import_module(package + ".msg"), kind))
 try:
     import numba.core.event
     numba.njit(lambda value: value)(1.0)
 except ImportError:
     pass
+inspect.getframeinfo(inspect.currentframe())  # as the first line of a log looks for the place of its caller
 sys.meta_path.insert(0, Imported())
 
 def serve(arguments, messages):
@@ -124,7 +130,7 @@ def play(values, bag):
     replay(bag, scenes_of(values), output=bag + ".out.mcap")
     return set()
 
-for case in pickle.load(sys.stdin.buffer):
+for case in cases:
     read, write = os.pipe()
     if os.fork() == 0:
         sys.stdout = sys.stderr
@@ -170,9 +176,11 @@ def loaded(where: str, scenes: list[dict[str, Any]], folder: Path) -> list[Loade
     # What is compiled here is kept: the probe cannot keep it, for its modules are not those that they seem.
     for values in scenes:
         Monitor(scenes_of(validate(values)))
+    names = [*(one.name for one in INPUT_TYPES.values()), *(one.type_name for one in OUTPUTS.values())]
+    types = {(one.partition("/")[0], one.rpartition("/")[2]) for one in names}
     done = subprocess.run(
         [sys.executable, "-c", PROBE, where, *HEAVY],
-        input=pickle.dumps(cases),
+        input=pickle.dumps((cases, [one for one in types if find_spec(one[0])])),
         stdout=subprocess.PIPE,
         check=True,
         env={**os.environ, "PYTHONPATH": os.pathsep.join([str(ROOT), *sys.path])},
