@@ -7,7 +7,7 @@ import os
 import shutil
 import subprocess
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from importlib.machinery import EXTENSION_SUFFIXES
 from pathlib import Path
 from typing import Any
@@ -87,8 +87,9 @@ from pathlib import Path
 from impact_predictor.bags.replay import replay
 from impact_predictor.native import form
 from impact_predictor.prediction.scene import read_scenes
-bag, scene, output, *remapped = sys.argv[1:]
-replay(bag, read_scenes(scene), dict(one.split("=") for one in remapped), output)
+for case in sys.argv[1:]:
+    bag, scene, output, *remapped = case.splitlines()
+    replay(bag, read_scenes(scene), dict(one.split("=") for one in remapped), output)
 print(form())
 """
 
@@ -122,31 +123,49 @@ def simulated_robot(path: Path) -> Path:
     return simulated(path, "robot", "solo12", "--duration", "2", "--noise-position", "0.001")
 
 
+def said(cases: Sequence[tuple[Path, Path, Sequence[str]]], plain: bool) -> list[bytes]:
+    """What replays of bags write, with their scenes and remapped topics, one after the other in a process."""
+    outputs = [bag.with_suffix(f".said_{plain:d}.mcap") for bag, _, _ in cases]
+    given = [
+        "\n".join(map(str, (bag, scene, output, *remapped)))
+        for (bag, scene, remapped), output in zip(cases, outputs, strict=True)
+    ]
+    environment = {**os.environ, "PYTHONPATH": str(ROOT), "IMPACT_PREDICTOR_PLAIN": f"{plain:d}"}
+    done = subprocess.run(
+        [sys.executable, "-c", SAID, *given], env=environment, capture_output=True, text=True, check=True
+    )
+    assert done.stdout.splitlines() == ["as Python: IMPACT_PREDICTOR_PLAIN is set" if plain else "compiled"]
+    return [output.read_bytes() for output in outputs]
+
+
+OF_TOSSES = ["odom=/cube/odom", "contact_geometry=/cube/contact_geometry"]
+
+
 @pytest.mark.slow
 @pytest.mark.skipif(isinstance(native.library(), str), reason="needs the library: `make compiled`")
 @pytest.mark.parametrize(
-    ("make", "scene", "remapped"),
+    "made",
     [
-        (tosses, "config/cube_tosses.yaml", ["odom=/cube/odom", "contact_geometry=/cube/contact_geometry"]),
-        (plan, "config/walker_hyq.yaml", []),
-        (recorded_deck, "config/deck_many.yaml", []),
-        (simulated_deck, "config/deck_crate.yaml", []),
-        pytest.param(simulated_robot, "simulated.yaml", [], marks=pytest.mark.extras),
+        {
+            tosses: ("config/cube_tosses.yaml", OF_TOSSES),
+            plan: ("config/walker_hyq.yaml", []),
+            recorded_deck: ("config/deck_many.yaml", []),
+            simulated_deck: ("config/deck_crate.yaml", []),
+        },
+        pytest.param({simulated_robot: ("simulated.yaml", [])}, marks=pytest.mark.extras),
     ],
+    ids=["recorded", "robot"],
 )
 def test_compiled_and_as_python_a_replay_writes_the_same_bytes(
-    make: Callable[[Path], Path], scene: str, remapped: list[str], tmp_path: Path
+    made: dict[Callable[[Path], Path], tuple[str, list[str]]], tmp_path: Path
 ) -> None:
-    bag, written = make(tmp_path), []
-    parameters = ROOT / scene if scene.startswith("config/") else tmp_path / scene
-    for plain, said in (("0", "compiled"), ("1", "as Python: IMPACT_PREDICTOR_PLAIN is set")):
-        output = tmp_path / f"said_{plain}.mcap"
-        command = sys.executable, "-c", SAID, str(bag), str(parameters), str(output), *remapped
-        environment = {**os.environ, "PYTHONPATH": str(ROOT), "IMPACT_PREDICTOR_PLAIN": plain}
-        done = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
-        assert done.stdout.splitlines() == [said]
-        written.append(output.read_bytes())
-    assert written[0] == written[1]
+    cases = []
+    for make, (scene, remapped) in made.items():
+        folder = tmp_path / make.__name__
+        folder.mkdir()
+        cases.append((make(folder), (ROOT if scene.startswith("config/") else folder) / scene, remapped))
+    for make, compiled, plain in zip(made, said(cases, False), said(cases, True), strict=True):
+        assert compiled == plain, make.__name__
 
 
 def odd_in(node: ast.AST) -> str | None:
