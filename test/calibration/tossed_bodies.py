@@ -35,6 +35,13 @@ class Toss(NamedTuple):
     strikes: list[tuple[float, int, float]]
 
 
+def crossed(a: Reals, b: Reals) -> Reals:
+    """As numpy's cross product to the last bit, which takes four times as long for one vector."""
+    one, two = [1, 2, 0], [2, 0, 1]
+    product: Reals = a[..., one] * b[..., two] - a[..., two] * b[..., one]
+    return product
+
+
 @lru_cache
 def tosses(number: int, rate: float = 200.0, noise: float = 0.0, kind: str = "box", time: float = 0.6) -> list[Toss]:
     """Poses at a rate in Hz, with noise of the corners in m, of bodies that are thrown and bounce on their corners.
@@ -70,14 +77,14 @@ def tosses(number: int, rate: float = 200.0, noise: float = 0.0, kind: str = "bo
         below = places[:, 2, None] + (turns @ arms.T)[:, 2] < radius
         for n, corner in np.argwhere(below).tolist():
             arm, turned = turns[n] @ arms[corner] + radius * DOWN, turns[n] @ inverse @ turns[n].T
-            struck = velocities[n] + np.cross(turned @ momenta[n], arm)
+            struck = velocities[n] + crossed(turned @ momenta[n], arm)
             if struck[2] < 0.0:
                 strikes[n].append(((k + 1) * STEP, corner, -float(struck[2])))
-                cross = np.cross(np.eye(3), arm)
+                cross = crossed(np.eye(3), arm)
                 after = along * [*rng.normal(0.0, 0.3, 2), -rng.uniform(0.2, 0.6) * struck[2]]
                 impulse = np.linalg.solve(np.eye(3) / MASS - cross @ turned @ cross, after - struck)
                 velocities[n] += impulse / MASS
-                momenta[n] += np.cross(arm, impulse)
+                momenta[n] += crossed(arm, impulse)
     every = round(1.0 / rate / STEP)
     positions, orientations = (np.array(values)[::every] for values in zip(*poses, strict=True))
     stamps = np.arange(len(positions)) * round(1e9 * every * STEP)
