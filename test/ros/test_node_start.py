@@ -1,6 +1,7 @@
 """How the node starts, refuses to start, and ends."""
 
 import importlib.util
+import os
 import re
 import signal
 import subprocess
@@ -22,6 +23,7 @@ NODE = [sys.executable, "-m", "impact_predictor.ros.node"]
 CONFIG = Path(__file__).parents[2] / "config"
 SCENE = CONFIG / "cube_tosses.yaml"
 DRUM = CONFIG / "deck_drum.yaml"
+WITHOUT_NUMBA = Path(__file__).with_name("without_numba")
 PATIENCE = 60.0
 
 
@@ -29,14 +31,18 @@ PATIENCE = 60.0
 @pytest.mark.slow
 @pytest.mark.skipif(not Path("/proc/self/status").exists(), reason="reads /proc to know when the program has begun")
 @pytest.mark.parametrize(
-    ("number", "executor", "scene"),
+    ("number", "executor", "scene", "path"),
     [
-        (signal.SIGINT, "single", "cube_tosses"),
-        (signal.SIGTERM, "events", "cube_tosses"),
-        (signal.SIGINT, "events", "deck_crate"),
+        (signal.SIGINT, "single", "cube_tosses", WITHOUT_NUMBA),
+        (signal.SIGTERM, "events", "cube_tosses", None),
+        (signal.SIGINT, "events", "deck_crate", WITHOUT_NUMBA),
     ],
 )
-def test_a_signal_ends_the_node_with_status_0_whenever_it_comes_and_leaves_nothing_behind(number, executor, scene):
+def test_a_signal_ends_the_node_with_status_0_whenever_it_comes_and_leaves_nothing_behind(
+    number, executor, scene, path, monkeypatch
+):
+    if path:
+        monkeypatch.setenv("PYTHONPATH", str(path), prepend=os.pathsep)
     # Alone, so that what it shares with the processes of its ROS domain ends with it.
     alone = ros_environment()
     for moment in (0.0, 0.1, 0.3, 1.2):
