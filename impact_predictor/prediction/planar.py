@@ -125,8 +125,7 @@ def contacts_of(scene: Scene, posture: Posture, scatter: Scatter | None = None) 
     gaps, rates = posture.gaps, posture.rates
     slack, noise = (0.0, 0.0) if scatter is None else (scatter.gap, scatter.rate)
     slowest, tolerance = -hardly(scene), max(scene.tolerance, slack)
-    fastest = min(rates)
-    if fastest >= slowest:
+    if all(rate >= slowest for rate in rates):
         return None
     limit = still_of(rates, noise)
     old = [i for i, gap in enumerate(gaps) if gap <= tolerance and -limit <= rates[i] <= limit]
@@ -147,7 +146,9 @@ def contacts_of(scene: Scene, posture: Posture, scatter: Scatter | None = None) 
 
 def still_of(rates: Sequence[float], noise: float) -> float:
     """The speed in m/s along the normal up to which a point stands, where rates of `noise` cannot be told from none."""
-    fastest = max(max(rates), -min(rates))
+    fastest = 0.0
+    for rate in rates:
+        fastest = max(fastest, abs(rate))
     return max(STANDING * fastest, min(noise, NEARER * fastest))
 
 
@@ -175,7 +176,8 @@ def along_plane(contacts: Sequence[PointOutcome], ahead: Vector3, normal: Vector
 
 def hardly(scene: Scene) -> float:
     """The speed in m/s that gravity gives within a contact time: slower is hardly moving."""
-    return scene.contact_time * hypot(*scene.gravity)
+    x, y, z = scene.gravity
+    return scene.contact_time * hypot(x, y, z)
 
 
 def plane_of(

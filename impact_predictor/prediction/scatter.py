@@ -60,7 +60,7 @@ class Scatter:
         last, gaps, rates = self._last, posture.gaps, posture.rates
         last.append((stamp, posture))
         slow = max(self._slowest, self.rate)
-        if -slow <= min(rates) and max(rates) <= slow:
+        if all(-slow <= rate <= slow for rate in rates):
             self._stand(gaps)
         if len(last) < 3:
             return

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
-from itertools import repeat
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -94,12 +93,13 @@ class SpatialImpactModel:
         plane, now, least = plane_at(scene, collision), axes_of(collision.orientation), RESTS * speed
         problem, uncertainty = self._problem(collision, now), None
         positions = [add(collision.position, arm) for arm in collision.arms]
+        normals = [normal] * len(positions)
         if self._draws is None:
             answers: Any = np.empty((1, ANSWER + RESULT * len(collision.points)))
             flags: Any = np.empty(1, np.int64)
             self._solve(problem[None], answers, flags)
             answer, notes = answers[0].tolist(), int(flags[0])
-            contacts = outcomes_of(answer, collision.contacts, positions, repeat(normal))
+            contacts = outcomes_of(answer, collision.contacts, positions, normals)
             mode = mode_of_contacts(contacts[:count], contacts[count:], normal, least)
         else:
             rates = list(collision.rates[count:])
@@ -107,7 +107,7 @@ class SpatialImpactModel:
                 sample, axes, problem, count, rates, deviation, now, plane.axis
             )
             answer = self._stopped(problem, drawn, least)
-            contacts = outcomes_of(answer, collision.contacts, positions, repeat(normal), lifts)
+            contacts = outcomes_of(answer, collision.contacts, positions, normals, lifts)
         vx, vy, vz, wx, wy, wz, lost = answer[:ANSWER]
         after = SpatialTwist((vx, vy, vz), (wx, wy, wz))
         stood, struck = contacts[:count], contacts[count:]
@@ -219,26 +219,18 @@ def outcomes_of(
     answer: list[float],
     contacts: ActiveContacts,
     positions: Sequence[Vector3],
-    normals: Iterable[Vector3],
+    normals: Sequence[Vector3],
     lifts: Sequence[float] = (),
 ) -> list[PointOutcome]:
     """What an answer of the law says of each contact, at its position, with the normal there, and with the probability
     that it lifts, where that is known.
     """
     found, count = [], len(contacts.old)
-    places = zip(contacts.old + contacts.new, positions, normals, strict=False)
-    for k, (point, position, normal) in enumerate(places):
-        a, b, c, u, v, w, state, _ = answer[ANSWER + RESULT * k : ANSWER + RESULT * (k + 1)]
-        found.append(
-            PointOutcome(
-                point=point,
-                is_new=k >= count,
-                position=position,
-                normal=normal,
-                impulse=(a, b, c),
-                velocity=(u, v, w),
-                state=STATES[int(state)],
-                lift_probability=lifts[k] if lifts else None,
-            )
-        )
+    for k, point in enumerate(contacts.old + contacts.new):
+        at = ANSWER + RESULT * k
+        impulse = answer[at], answer[at + 1], answer[at + 2]
+        velocity = answer[at + 3], answer[at + 4], answer[at + 5]
+        state, lift = STATES[int(answer[at + 6])], lifts[k] if lifts else None
+        # By place, which takes half the time.
+        found.append(PointOutcome(point, k >= count, positions[k], normals[k], impulse, velocity, state, lift))
     return found
