@@ -121,10 +121,10 @@ def remarks(
             said.append(f"nothing comes on {names.get(one, one.name)}, though {MISSED[one.kind]}{otherwise}")
     for one in inputs:
         if one.kind in POINTS and one.body is not None:
-            # What speaks against the scene although the messages fit it.
             unknown = listed(run.monitor.predictors[one.body].contacts.unknown_joints, _MOST_NAMED)
-            left_out = f"robot.urdf does not know {unknown}, so what is told of these joints is left out"
-            said += [f"{names[one]}: {left_out}"] if unknown else []
+            if unknown:
+                left_out = f"robot.urdf does not know {unknown}, so what is told of these joints is left out"
+                said.append(f"{names[one]}: {left_out}")
     said += run.monitor.deck.doubts() if run.monitor.deck is not None else ()
     for body, record in run.bodies.items():
         contacts, walking = run.monitor.predictors[body].contacts, record.scene.walking

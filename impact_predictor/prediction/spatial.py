@@ -153,14 +153,14 @@ class SpatialModel:
         )
         if end.point < 0:
             return None
-        old, state = end.standing, end.state
+        old, state, gaps = end.standing, end.state, end.gaps
         window = WINDOW * scene.merge
         slack = SLACK * self.gap_deviation if scene.samples else 0.0
         new = tuple(
             [
                 i
                 for i, rate in enumerate(end.rates)
-                if i == end.point or (i not in old and rate < 0.0 and end.gaps[i] <= slack - window * rate)
+                if i == end.point or (i not in old and rate < 0.0 and gaps[i] <= slack - window * rate)
             ]
         )
         orientation = composed(self._frame, state.orientation)
@@ -173,7 +173,7 @@ class SpatialModel:
             before=SpatialTwist(to_world(frame, state.velocity), to_world(frame, state.angular_velocity)),
             points=points,
             arms=tuple([to_world(axes, self._arms[i]) for i in points]),
-            gaps=tuple([0.0 if i in old or i == end.point else max(0.0, end.gaps[i]) for i in points]),
+            gaps=tuple([0.0 if i in old or i == end.point else max(0.0, gaps[i]) for i in points]),
             rates=tuple([end.rates[i] for i in points]),
             places=self._arms,
             measured=-total([rates[i] for i in new]) / len(new),

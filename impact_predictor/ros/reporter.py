@@ -39,7 +39,7 @@ class MarkerTopic:
         """Take an accepted message on an input: contact points also for later."""
         if one.kind == CONTACT_GEOMETRY:
             body = one.body or ""
-            self._geometries[body] = self._monitor.predictors[body].brought(message)
+            message = self._geometries[body] = self._monitor.predictors[body].brought(message)
         if self.drawing is not None and self.drawing.hear(self._monitor, one, message):
             self.show(message.stamp)
 

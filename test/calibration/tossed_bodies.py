@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
+from spatial_reference import crossed
 
 from impact_predictor.calibration.motions import RecordedMotion
 from impact_predictor.prediction.scene import Scene, inertia_matrix
@@ -33,13 +34,6 @@ class Toss(NamedTuple):
 
     motion: RecordedMotion
     strikes: list[tuple[float, int, float]]
-
-
-def crossed(a: Reals, b: Reals) -> Reals:
-    """As numpy's cross product to the last bit, which takes four times as long for one vector."""
-    one, two = [1, 2, 0], [2, 0, 1]
-    product: Reals = a[..., one] * b[..., two] - a[..., two] * b[..., one]
-    return product
 
 
 @lru_cache

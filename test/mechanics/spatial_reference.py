@@ -203,7 +203,7 @@ class Mechanism(NamedTuple):
 
 
 def crossed(a, b):
-    """As numpy's cross product, which takes four times as long for few vectors."""
+    """As numpy's cross product to the last bit, which takes four times as long for few vectors."""
     one, two = [1, 2, 0], [2, 0, 1]
     return a[..., one] * b[..., two] - a[..., two] * b[..., one]
 

@@ -286,7 +286,7 @@ class DescentEstimator:
             return None
         passed = (filtered.stamp - self._stamp) / NANOSECONDS
         self._stamp = filtered.stamp
-        found = []
+        found, shares = [], prior.shares
         for k, kind in enumerate(prior.kinds):
             start = self._times[k]
             start = self._times[k] = None if start is None or start <= passed else start - passed
@@ -296,7 +296,7 @@ class DescentEstimator:
             one = solution_of(kind, gap, filtered, unsure, start)
             self._times[k] = None if one is None else one.time
             if one is not None:
-                found.append((one.evidence + log(prior.shares[k]), k, one))
+                found.append((one.evidence + log(shares[k]), k, one))
         if not found:
             self._left_out = [0, 0]
             return None

@@ -7,6 +7,7 @@ from importlib.util import find_spec
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 from ...mechanics.types import Flag, Mode
+from ...prediction.checks import with_motion
 from ...prediction.types import Foot, Landing, Leftover, Prediction, Score, Status
 from ...stamps import NANOSECONDS
 from ..cdr import LITTLE_ENDIAN_HEADER, OK, WARN, StatusBytes, diagnostic_array, diagnostic_status, pairs_of
@@ -41,13 +42,8 @@ def encode_post_impact(prediction: Prediction) -> bytes | None:
 
         state = post_impact(prediction)
     position, orientation, linear, angular = state
-    after = sample._replace(
-        stamp=sample.stamp + round(touchdown.lead_time * NANOSECONDS),
-        position=position,
-        orientation=orientation,
-        linear=linear,
-        angular=angular,
-    )
+    stamp = sample.stamp + round(touchdown.lead_time * NANOSECONDS)
+    after = with_motion(sample, stamp, sample.frame_id, position, orientation, linear, angular)
     if uncertainty is not None:
         after = after._replace(twist_covariance=uncertainty.twist_covariance)
     return encode_odometry(after)
